@@ -132,6 +132,19 @@ double length_of(const NewArguments& arguments, const ToldString& told) {
   return length;
 }
 
+// Left open where the record does not tell it: what is guessed would be believed.
+std::string position_line(const ToldString& told, double length, const RecordOptions& record) {
+  if (told.rival) {
+    return fmt::format(
+        "  position:  # fill in, from the end of {}: a pluck, or what rings by itself, does not "
+        "tell it; {:.5g} or {:.5g} mm, or others\n",
+        yaml_string(record.left.channel), 1e3 * told.contact * length, 1e3 * *told.rival * length);
+  }
+  return fmt::format(
+      "  position: {:.5g} mm  # as the record has it: {:.4f} of the length from the end of {}\n",
+      1e3 * told.contact * length, told.contact, yaml_string(record.left.channel));
+}
+
 std::string file_for_record(const NewArguments& arguments) {
   MODCAL_REQUIRE(arguments.kind == "invert" || arguments.kind == "calibrate",
                  "a record is read by the kinds invert and calibrate, not by {}: leave the record "
@@ -159,11 +172,13 @@ std::string file_for_record(const NewArguments& arguments) {
   const double density = stated(arguments.linear_density, "--linear-density", "kg/m", 1e-3);
   const bool invert = arguments.kind == "invert";
   std::string text = fmt::format(
-      "# As it is, modcal run runs it.\n"
+      "# {}\n"
       "kind: {}\n"
       "title: {}\n"
       "record:\n"
       "  file: {}\n",
+      told.rival ? "State bow.position: the record does not tell it."
+                 : "As it is, modcal run runs it.",
       arguments.kind, yaml_string(arguments.record),
       yaml_string(seen_from(arguments.out, arguments.record)));
   text += channel_lines(record);
@@ -174,8 +189,7 @@ std::string file_for_record(const NewArguments& arguments) {
       "  fundamental: {:.6g} Hz  # as the record has it\n"
       "  inharmonicity: {:.3g}  # B of f_n = n f0 sqrt(1 + B n^2), as the record has it\n"
       "  damping: {{type: constant, ratio: 1e-3}}{}\n"
-      "bow:\n"
-      "  position: {:.5g} mm  # as the record has it: {:.4f} of the length from the end of {}\n",
+      "bow:\n",
       length,
       arguments.length.empty() ? "  # not in the record: state yours; positions go with it" : "",
       density,
@@ -184,8 +198,8 @@ std::string file_for_record(const NewArguments& arguments) {
           : "",
       told.fundamental, told.inharmonicity,
       invert ? "  # state yours, or calibrate first"
-             : "  # a start: the calibration finds every mode's own",
-      1e3 * told.contact * length, told.contact, yaml_string(record.left.channel));
+             : "  # a start: the calibration finds every mode's own");
+  text += position_line(told, length, record);
   if (!told.explained) {
     text += "# The reactions are not quite those of one string: modcal validate says why.\n";
   }

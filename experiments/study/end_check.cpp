@@ -205,7 +205,8 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
   if (std::abs(difference) < 3e-3) return;
   const std::optional<ToldString> alone = told_string(observation);
   const double contact = options.contact.position / options.string.length;
-  if (alone && std::abs(alone->fundamental / options.string.fundamental - 1.0) < 3e-3) {
+  if (alone && !alone->rival &&
+      std::abs(alone->fundamental / options.string.fundamental - 1.0) < 3e-3) {
     throw WrongKey(
         "bow.position",
         fmt::format("{}: the reactions are those of a string with the f0 stated, but with the "
@@ -227,7 +228,8 @@ std::optional<ToldString> told_string(const Observation& observation) {
   const auto& right = observation.reaction(End::kRight);
   if (observation.truth || !left || !right) return std::nullopt;
   try {
-    const ToldString told = find_string(ends_of(*left, *right));
+    const double contact = observation.contact / observation.basis.length;
+    const ToldString told = find_string(ends_of(*left, *right), contact);
     return told.explained ? std::optional(told) : std::nullopt;
   } catch (const InvalidInput&) {
     return std::nullopt;  // no note of a string: the calibration says so

@@ -146,8 +146,8 @@ bool require_one_string(const ObservationOptions& options, const RecordedSignals
 /// stated, which they tell to 0.05 %: an inversion takes it for granted, and modes are 2ζ wide.
 void require_told_fundamental(const ObservationOptions& options, const Observation& observation);
 
-/// The string that explains both recorded reactions (find_string()); none where there is none, or
-/// one reaction, or a simulation.
+/// The string that explains both recorded reactions (find_string()), with the contact stated where
+/// they do not tell it; none where there is none, or one reaction, or a simulation.
 std::optional<ToldString> told_string(const Observation& observation);
 
 }  // namespace modcal

@@ -75,12 +75,16 @@ struct ToldString {
   double contact = 0.0;        ///< x_c/L, from the end of the left reaction [1]
   double misfit = std::numeric_limits<double>::infinity();  ///< as EndRelationFit's, up to 40 f₀
   bool explained = false;  ///< the reactions are those of this string
+  /// x_c/L of the string that serves nearly as well with the contact elsewhere, as of what rings by
+  /// itself any does; none: the record tells its contact.
+  std::optional<double> rival = {};
 };
 
 /// f₀, B ≥ 0 and x_c of the string that the ends obey best up to 40 f₀, looked for below 5 f₀ with
 /// x_c anywhere and f₀ near the pitch, the first lag at which both reactions are alike, or, where
-/// no such string explains them, up to eight times as high. Throws InvalidInput for a record
-/// without a period.
-ToldString find_string(const EndRecord& record);
+/// no such string explains them, up to eight times as high. Where the record does not tell its
+/// contact, the string is that of x_c/L as stated, and the best elsewhere its rival. Throws
+/// InvalidInput for a record without a period.
+ToldString find_string(const EndRecord& record, std::optional<double> contact = {});
 
 }  // namespace modcal

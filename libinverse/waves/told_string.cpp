@@ -114,17 +114,8 @@ std::vector<Candidate> scanned(const EndSpectra& spectra, double top, double low
   return best;
 }
 
-// Near its modes a string moves both ends alike, wherever the contact is: few modes tell f₀, and
-// more of them which contact of several.
-ToldString told_by(const EndRecord& record, const EndSpectra& spectra, double lowest,
-                   double highest) {
-  std::vector<Candidate> candidates = scanned(spectra, kScanBand, lowest, highest);
-  if (candidates.empty()) return {};
-  keep_best(1, candidates);
-  refine(spectra, kScanBand, grid_of(kScanBand, 0), candidates.front().string);
-  const double fundamental = candidates.front().string.fundamental;
-  candidates = scanned(spectra, 2.0 * kScanBand, 0.99 * fundamental, 1.01 * fundamental);
-  if (candidates.empty()) return {};
+// By more and more modes, among which B is told.
+void refine_all(const EndSpectra& spectra, std::vector<Candidate>& candidates) {
   for (const double top : {2.0 * kScanBand, kStiffBand, 2.0 * kStiffBand}) {
     const int steps = top < kStiffBand ? 0 : top > kStiffBand ? 4 : kStiffSteps;
     for (auto& [string, misfit] : candidates) {
@@ -132,30 +123,65 @@ ToldString told_by(const EndRecord& record, const EndSpectra& spectra, double lo
     }
     keep_best(kCandidates, candidates);
   }
-  const auto& [string, misfit] = candidates.front();
-  if (!std::isfinite(misfit)) return {};
+}
+
+// Of contacts elsewhere the one that serves best, if nearly as well as the best of all.
+std::optional<double> rival_of(const std::vector<Candidate>& candidates) {
+  const Candidate& best = candidates.front();
+  const auto is_elsewhere = [&best](const Candidate& other) {
+    return std::abs(other.string.contact - best.string.contact) > kSameContact;
+  };
+  const auto found = std::ranges::find_if(candidates, is_elsewhere);
+  if (found == candidates.end() || found->misfit - best.misfit > kContactTold) return std::nullopt;
+  return found->string.contact;
+}
+
+// Near its modes a string moves both ends alike, wherever the contact is: few modes tell f₀, and
+// more of them which contact of several.
+ToldString told_by(const EndRecord& record, const EndSpectra& spectra, double lowest,
+                   double highest, std::optional<double> stated) {
+  std::vector<Candidate> candidates = scanned(spectra, kScanBand, lowest, highest);
+  if (candidates.empty()) return {};
+  keep_best(1, candidates);
+  refine(spectra, kScanBand, grid_of(kScanBand, 0), candidates.front().string);
+  const double fundamental = candidates.front().string.fundamental;
+  candidates = scanned(spectra, 2.0 * kScanBand, 0.99 * fundamental, 1.01 * fundamental);
+  if (candidates.empty()) return {};
+  refine_all(spectra, candidates);
+  Candidate best = candidates.front();
+  if (!std::isfinite(best.misfit)) return {};
+  std::optional<double> rival = rival_of(candidates);
+  if (rival && stated) {
+    candidates = {{.string = {.length = 1.0, .fundamental = fundamental, .contact = *stated}}};
+    refine_all(spectra, candidates);
+    if (std::abs(best.string.contact - *stated) > kSameContact) rival = best.string.contact;
+    best = candidates.front();
+    if (!std::isfinite(best.misfit)) return {};
+  }
+  const auto& [string, misfit] = best;
   const EndRelationFit fit = fit_end_relations(record, string);
   return {
       .fundamental = string.fundamental,
       .inharmonicity = string.inharmonicity,
       .contact = string.contact,
       .misfit = misfit,
-      .explained = misfit < kToldMisfit && fit.best() == EndRelation::kString && fit.explained()};
+      .explained = misfit < kToldMisfit && fit.best() == EndRelation::kString && fit.explained(),
+      .rival = rival};
 }
 
 }  // namespace
 
-ToldString find_string(const EndRecord& record) {
+ToldString find_string(const EndRecord& record, std::optional<double> contact) {
   MODCAL_REQUIRE(record.left.size() == record.right.size() && record.left.size() >= 64,
                  "the reactions have {} and {} samples: one record has as many of both, and 64 at "
                  "least",
                  record.left.size(), record.right.size());
   const EndSpectra spectra(record);
   const double pitch = 1.0 / period_of(record);
-  ToldString told = told_by(record, spectra, 0.96 * pitch, 1.04 * pitch);
+  ToldString told = told_by(record, spectra, 0.96 * pitch, 1.04 * pitch, contact);
   if (told.explained) return told;
   // A string that slips out of step repeats itself after some periods, or nearly.
-  const ToldString other = told_by(record, spectra, 0.7 * pitch, 8.0 * pitch);
+  const ToldString other = told_by(record, spectra, 0.7 * pitch, 8.0 * pitch, contact);
   return other.explained || !std::isfinite(told.misfit) ? other : told;
 }
 

@@ -117,6 +117,17 @@ constexpr std::size_t kCandidates = 12;
 /// Halved: one right string in four is not.
 constexpr double kToldMisfit = 1.55;
 
+/// By how much less the misfit of a string must be than that of one with the contact elsewhere for
+/// the record to tell its contact, and how far x_c/L of the same contact may be apart.
+/// Source: 45 strokes of benchmarks/truth, .1 to 20 % of noise: 0.9 to 2.9. Of plucks, blows and
+/// free decays, whose power is in lines at the modes, 0.004 to 0.05, half of them with the contact
+/// mirrored first.
+/// Range tried: 0.1 to 0.8; 0.005 to 0.03.
+/// Doubled: as now; a rival a tenth of a lobe away is none.
+/// Halved: as now; a second place in the lobe of the best is a rival.
+constexpr double kContactTold = 0.3;
+constexpr double kSameContact = 0.015;
+
 /// Modes, in f₀, among which B is looked for first, and in how many steps to either side of that
 /// stated.
 /// Source: at 20 f₀ a B of 1e-3, that of the stiffest strings, moves a mode by a fifth.

@@ -54,11 +54,17 @@ void start_from_record(const Observation& observation, const CalibrationOptions&
   for (std::size_t n = 1; n <= basis.size(); ++n) {
     frequencies.push_back(stiff_string_frequency(told->fundamental, told->inharmonicity, n));
   }
-  const double contact = told->contact * basis.length;
+  const double contact = told->rival ? outcome.initial.contact : told->contact * basis.length;
   outcome.start = fmt::format(
       "Started from the string that the ends of the record tell: f0 {:.6g} Hz, B {}, x_c "
       "{:.4g} mm.",
       told->fundamental, inharmonicity_text(told->inharmonicity), 1e3 * contact);
+  if (told->rival) {
+    outcome.start += fmt::format(
+        " The ends do not tell x_c, as of a pluck or of what rings by itself: it starts as stated, "
+        "and with {:.4g} mm they would be explained as well.",
+        1e3 * *told->rival * basis.length);
+  }
   const double stated = basis.frequency(0);
   if (std::abs(frequencies[0] / stated - 1.0) > 0.03 ||
       std::abs(contact - outcome.initial.contact) > 0.02 * basis.length) {
