@@ -12,10 +12,11 @@ no code with modcal, fits the table of modes with BUILD/modcal and identifies ea
     akf          augmented Kalman filter and smoother: random-walk force (Lourens et al. 2012), variance of largest likelihood
     gp           latent force, Matérn 3/2 (Alvarez 2009; Nayek et al. 2019), variance and length of largest likelihood
 
-All have the same table, record and window. With --string the records are blows and bowed strokes of a string (string_records.py), and
-forces are compared without their means, which sensors of force mostly do not give. With --record CSV --table YAML --force COLUMN
---responses COLUMN … another record, with a measured force of one blow, is taken. Prints relative rms error over the window, its share
-between the table's frequencies, the share of the samples in the 95 % band, and seconds of wall clock (modcal: of the whole process).
+All have the same table, record and window. With --string the records are blows and bowed strokes of a string
+(string_records.py); their forces are compared from 1 ms before they begin and without their means, which sensors of force mostly
+do not give. With --record CSV --table YAML --force COLUMN --responses COLUMN … another record, with a measured force,
+is taken. Prints relative rms error over the window, its share between the table's frequencies, the share of the samples in the
+95 % band, and seconds of wall clock (modcal: of the whole process), medians of the draws.
 """
 import argparse
 import subprocess
@@ -84,7 +85,7 @@ class Table:
         return signal.sosfiltfilt(np.vstack(parts), x, axis=0)
 
 
-def pinv(table, y, rate, count, ends):
+def pinv(table, y, rate, count):
     padded = 2 * y.shape[0]
     f = np.fft.rfftfreq(padded, 1 / rate)
     band = (f >= table.low if table.low > f[1] else f >= 0) & (f <= table.high)
@@ -94,8 +95,8 @@ def pinv(table, y, rate, count, ends):
     return np.fft.irfft(force, padded)[:count], None
 
 
-def convolution(table, rate, rows, count):
-    """Matrix from so many samples of the force to the rows of all sensors."""
+def convolution(table, rate, rows):
+    """Matrix from so many samples of the force to as many of all sensors."""
     padded = 4 * rows
     sigma = np.log(1e6) / (padded / rate)  # exp(−σt): what wraps around is below 1e-6
     f = np.fft.rfftfreq(padded, 1 / rate)
@@ -103,11 +104,11 @@ def convolution(table, rate, rows, count):
     lag = np.arange(padded)
     lag = np.where(lag < padded // 2, lag, lag - padded)  # H ends at half the rate: it rings before 0, too
     impulse = np.fft.irfft(h, padded, axis=1) * np.exp(sigma * lag / rate)
-    return np.vstack([linalg.toeplitz(g[:rows], g[-np.arange(count)]) for g in impulse])
+    return np.vstack([linalg.toeplitz(g[:rows], g[-np.arange(rows)]) for g in impulse])
 
 
 def corner(x, y):
-    """Corner of the L-curve, x growing: the sharpest angle between an earlier point, this and the last (Castellanos et al. 2002)."""
+    """Corner of the L-curve, x growing: the sharpest angle of an earlier point, this and the last (Castellanos et al. 2002)."""
     points = np.column_stack([np.log(x), np.log(y)])
     sharpest, at = np.cos(7 * np.pi / 8), len(points) // 2
     for k in range(1, len(points) - 1):
@@ -119,13 +120,11 @@ def corner(x, y):
     return at
 
 
-def least_squares(table, y, rate, count, ends, truncated):
-    # A force that goes on behind the window acts on what is read there: a tenth of the window more, and nothing after that.
-    columns = count if ends else min(y.shape[0], count + count // 10)
-    rows = y.shape[0] if ends else columns
+def least_squares(table, y, rate, count, truncated):
+    rows = y.shape[0]
     # The modes below the band are a mere static term, those above are not known: both sides lose what lies there.
-    a = np.vstack([table.keep_band(part, rate) for part in np.split(convolution(table, rate, rows, columns), y.shape[1])])
-    b = table.keep_band(y[:rows], rate).T.ravel()
+    a = np.vstack([table.keep_band(part, rate) for part in np.split(convolution(table, rate, rows), y.shape[1])])
+    b = table.keep_band(y, rate).T.ravel()
     u, s, vt = linalg.svd(a, full_matrices=False)
     beta = u.T @ b
     rest = b @ b - beta @ beta
@@ -145,7 +144,7 @@ def least_squares(table, y, rate, count, ends, truncated):
     return force, np.sqrt(np.einsum("ij,i->j", vt**2, noise / (s**2 + lambdas[at] ** 2)))
 
 
-def smoother(table, y, rate, count, ends, matern):
+def smoother(table, y, rate, count, matern):
     """Kalman filter and Rauch–Tung–Striebel smoother on modes and force; hyperparameters of largest likelihood."""
     a, b, c, d = table.state_space()
     n, step, k = b.size, 1 / rate, y.shape[1]
@@ -188,7 +187,8 @@ def smoother(table, y, rate, count, ends, matern):
 
     # Largest likelihood: the best of a grid; of the one number of a random walk, then what is best beside that.
     lengths = np.array([0.3, 0.6, 1.2, 2.4]) / table.high if matern else (0.001,)
-    _, deviation, length = max((run(guess * v, length, False), guess * v, length) for v in (0.3, 3, 30, 300) for length in lengths)
+    grid = [(guess * v, length) for v in (0.3, 3, 30, 300) for length in lengths]
+    deviation, length = max(grid, key=lambda pair: run(*pair, False))
     if not matern:
         near = np.log(deviation) + np.log(10) * np.array([-0.5, 0.5])
         cost = lambda x: -run(np.exp(x), length, False)
@@ -264,15 +264,16 @@ def main():
     p.add_argument("--offset", action="store_true", help="the channels of --record stand off zero by their medians")
     p.add_argument("--responses", nargs="+", default=["a1", "a2", "a3", "a4"])
     p.add_argument("--window", type=float, default=0.08)
+    p.add_argument("--cases", nargs="+", help="only these: blow or stroke of --string, strike or smooth of the plate")
     p.add_argument("--methods", nargs="+", default=["modcal", "invert", *METHODS])
     a = p.parse_args()
     a.folder.mkdir(parents=True, exist_ok=True)
     if a.record:
-        cases = {a.record.stem: ([a.record], a.table, a.window, True)}
+        cases = {a.record.stem: ([a.record], a.table, a.window)}
     elif a.string:
         a.force, a.responses, cases = "f_c", ["R1", "R2"], {}
         for kind in ("blow", "stroke"):
-            cases[kind] = (*string_records.records(a.build, a.folder, kind, a.draws), 0.06, kind == "blow")
+            cases[kind] = (*string_records.records(a.build, a.folder, kind, a.draws), 0.06)
     else:
         strike = a.folder / "strike.csv"
         plate.write(strike, *plate.record(np.random.default_rng(1), 0, 1.5))
@@ -283,14 +284,14 @@ def main():
             files = [a.folder / f"{kind}_{draw}.csv" for draw in range(a.draws)]
             for draw, file in enumerate(files):
                 plate.write(file, *plate.record(np.random.default_rng([7, draw, 1000]), 1e-3, 1.0, kind))
-            cases[kind] = (files, a.folder / "strike/table.yaml", window, kind == "strike")
+            cases[kind] = (files, a.folder / "strike/table.yaml", window)
     sign = -1 if a.turned else 1
     print("case      method      error  in band  in the 95 % band  seconds")
-    for case, (files, path, window, ends) in cases.items():
+    for case, (files, path, window) in cases.items():
         table = Table(path)
         for method in a.methods:
             rows = []
-            if method == "invert" and not a.string:
+            if a.cases and case not in a.cases or method == "invert" and not a.string:
                 continue
             for file in files:
                 truth, y, rate = read(file, a.force, a.responses, a.offset)
@@ -299,9 +300,14 @@ def main():
                 if method == "modcal":
                     force, sd = by_modcal(a.build, a.folder / file.stem, file, path, a.force, sign, a.responses, window)
                 elif method == "invert":
-                    force, sd = string_records.by_invert(a.build, a.folder / f"{file.stem}_invert", file)
+                    found = string_records.by_invert(a.build, a.folder / f"{file.stem}_invert", file)
+                    if found is None:
+                        continue
+                    force, sd = found
                 else:
-                    force, sd = METHODS[method](table, y, rate, count, ends)
+                    # The spectra take the whole record; all others the window and a tenth more, as the force may go on behind it.
+                    read_until = None if method == "pinv" else count + count // 10
+                    force, sd = METHODS[method](table, y[:read_until], rate, count)
                 seconds = time.perf_counter() - begin
                 sd = sd if sd is None else sd[:count]
                 force, truth = force[:count], truth[:count]
@@ -310,6 +316,8 @@ def main():
                     force, truth = (x[first:] - x[first:].mean() for x in (force, truth))
                     sd = sd if sd is None else sd[first:]
                 rows.append((*judge(force, sd, truth, table, rate), seconds))
+            if not rows:
+                continue
             error, band, held, seconds = np.median(rows, axis=0)
             share = "-" if np.isnan(held) else f"{100 * held:.1f} %"
             print(f"{case:9s} {method:10s} {error:6.3f} {band:8.3f} {share:>17s} {seconds:8.2f}", flush=True)
