@@ -114,6 +114,12 @@ void OutputDirectory::announce(const std::vector<std::string>& names) {
   write_names();
 }
 
+void OutputDirectory::keep(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (earlier_ && earlier_->contains(name)) announced_.insert(name);
+  }
+}
+
 void OutputDirectory::announce_folders(const std::vector<std::string>& names) {
   announced_folders_.insert(names.begin(), names.end());
   write_names();

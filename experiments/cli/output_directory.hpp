@@ -50,6 +50,8 @@ class OutputDirectory {
   void write_provenance(nlohmann::ordered_json provenance);
   /// Before files of these names are written, so that those of a killed run are known as well.
   void announce(const std::vector<std::string>& names);
+  /// Those of them that an earlier run wrote stay where they are.
+  void keep(const std::vector<std::string>& names);
   void announce_folders(const std::vector<std::string>& names);
   /// Once they stand: removes what earlier runs wrote and this one has not announced.
   void remove_earlier();

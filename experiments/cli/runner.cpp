@@ -170,6 +170,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
     out.require_own(names_of_list(*list, folder));
     store.emplace(out.path(), settings.shard, program_identity());
   }
+  const FolderLock working(out.path(), settings.shard);
   SharedWork work(interrupt_token());
   Beside beside;
   beside.database = list != nullptr && is_same_run(loaded, settings, out);
@@ -215,6 +216,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   std::vector<std::string> names;
   for (const LoadedExperiment& one : experiments) names.push_back(stem_of(one.document.file));
   const OutputDirectory before = begin_together(names, settings);
+  const FolderLock working(before.path(), settings.shard);
   const auto limit = limit_threads(settings.threads);
   SharedWork work(interrupt_token());
   report::Report report;

@@ -102,9 +102,20 @@ std::size_t add_rows(const StoredRun& run, ResultsDatabase& database) {
   return done;
 }
 
+void require_some_done(const StoredRun& run) {
+  for (std::size_t task = 0; task < run.tasks(); ++task) {
+    if (run.outcomes().has(task)) return;
+  }
+  throw_invalid_input(
+      "{}: none of the {} tasks is done, by this program and with its files as they are now; run:\n"
+      "  {}",
+      run.out().string(), run.tasks(), run.command());
+}
+
 ExitCode merge(const FolderArguments& arguments) {
   const StoredRun run(arguments.folder);
   print_damages(run);
+  require_some_done(run);
   OutputDirectory out(run.out());
   const std::filesystem::path file = run.out() / kDatabaseFile;
   MODCAL_REQUIRE(out.foreign_among({kDatabaseFile}).empty(),
@@ -139,6 +150,12 @@ ExitCode replay_task(const FolderArguments& arguments) {
   const StoredRun run(out);
   MODCAL_REQUIRE(task < run.tasks(), "task {} does not exist: {} has the tasks 0 to {}", task, out,
                  run.tasks() - 1);
+  if (!run.outcomes().has(task)) {
+    warn(
+        "task {} is not among those that {} has finished, by this program and with its files as "
+        "they are now: what follows is none of its results",
+        task, out);
+  }
   auto cell = nlohmann::ordered_json::object();
   for (std::size_t axis = 0; axis < run.list().axes().size(); ++axis) {
     remark("{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
@@ -274,10 +291,9 @@ ExitCode report_stored_run(const std::string& out) {
   const StoredRun run(out);
   print_damages(run);
   SharedWork work;
+  require_some_done(run);
   const StudyResult result =
       run.list().sum_up(run.outcomes(), context_of(run, work, run.command()));
-  MODCAL_REQUIRE(result.pending_tasks < run.tasks(), "{}: none of the {} tasks is done; run:\n  {}",
-                 out, run.tasks(), run.command());
   return present(run.loaded(), result, settings_of(run, out), 0.0);
 }
 

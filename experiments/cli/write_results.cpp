@@ -220,8 +220,8 @@ ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSe
   }
   names.insert(names.end(), {kProvenanceFile, kResolvedFile});
   if (beside.database) {
-    names.emplace_back(kDatabaseFile);
-    names.insert(names.end(), kSlurmScripts.begin(), kSlurmScripts.end());
+    out.keep({kDatabaseFile});
+    out.keep({kSlurmScripts.begin(), kSlurmScripts.end()});
   }
   out.announce(names);
   write_files(out, result);

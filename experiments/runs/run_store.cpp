@@ -1,6 +1,7 @@
 #include "experiments/runs/run_store.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -91,6 +92,17 @@ RunLock::RunLock(const std::filesystem::path& folder, const Shard& shard)
 
 RunLock::~RunLock() {
   if (ftruncate(shard_.descriptor(), 0) != 0) errno = 0;
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder, const Shard& shard)
+    : folder_(OpenFile::folder(folder, "the output folder")) {
+  const int how = shard.is_whole() ? LOCK_EX : LOCK_SH;
+  // Where a file system knows no locks of folders nobody is kept out.
+  const bool taken = flock(folder_.descriptor(), how | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  MODCAL_REQUIRE(taken,
+                 "another run works in {}; wait for it, stop it or choose another folder with "
+                 "--out",
+                 folder.string());
 }
 
 bool is_running(const std::filesystem::path& folder) {

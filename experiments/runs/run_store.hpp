@@ -42,6 +42,17 @@ class RunLock {
   OpenFile shard_;
 };
 
+/// Held while the results of a folder are made, a list's or a single run's: nobody else writes
+/// there. Runs of shards share it.
+class FolderLock {
+ public:
+  /// Throws InvalidInput where another run works in the folder.
+  FolderLock(const std::filesystem::path& folder, const Shard& shard);
+
+ private:
+  OpenFile folder_;
+};
+
 /// Whether a run works in the folder; looks without touching.
 bool is_running(const std::filesystem::path& folder);
 

@@ -3,15 +3,29 @@
 namespace modcal {
 namespace {
 
-// Looks up every task among the finished ones, over threads.
-void find_finished(const TaskExperiment& experiment, const FinishedTasks& finished,
-                   const std::filesystem::path& folder, const StopToken& stop,
-                   TaskOutcomes& outcomes) {
+// Looks up every task among the finished ones, over threads; hashes of their keys.
+std::vector<std::size_t> find_finished(const TaskExperiment& experiment,
+                                       const FinishedTasks& finished,
+                                       const std::filesystem::path& folder, const StopToken& stop,
+                                       TaskOutcomes& outcomes) {
+  std::vector<std::size_t> keys(outcomes.size());
   const auto find = [&](std::size_t task) {
-    const RecordPlace place = finished.find(finished.key_of(experiment.fingerprint(task, folder)));
+    const std::string key = finished.key_of(experiment.fingerprint(task, folder));
+    keys[task] = std::hash<std::string>{}(key);
+    const RecordPlace place = finished.find(key);
     if (place.is_known()) outcomes.put(task, place);
   };
   for_each_task(outcomes.size(), find, stop);
+  return keys;
+}
+
+// Of a file that was written to in the meantime nobody knows which content the task has read.
+void require_same_inputs(std::size_t task, const std::string& key, std::size_t begun) {
+  MODCAL_REQUIRE(std::hash<std::string>{}(key) == begun,
+                 "task {}: a file that the list reads has changed since the list began: what was "
+                 "finished before is kept; run the command again, which does all of it with the "
+                 "file as it is then",
+                 task);
 }
 
 // The same for texts that differ in their numbers alone.
@@ -57,8 +71,9 @@ TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& con
                        RunStore* store, const Shard& shard) {
   const FinishedTasks* finished = store != nullptr ? &store->finished() : nullptr;
   TaskOutcomes outcomes(experiment.task_count(), finished);
+  std::vector<std::size_t> begun;
   if (finished != nullptr) {
-    find_finished(experiment, *finished, context.folder, context.stop, outcomes);
+    begun = find_finished(experiment, *finished, context.folder, context.stop, outcomes);
   }
   std::vector<std::uint32_t> pending;
   for (std::size_t task = 0; task < outcomes.size(); ++task) {
@@ -79,6 +94,7 @@ TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& con
       outcomes.put(task, FinishedTask{std::move(outcome), seconds});
     } else {
       std::string key = finished->key_of(experiment.fingerprint(task, context.folder));
+      require_same_inputs(task, key, begun[task]);
       outcomes.put(task, store->append({std::move(key), task, seconds, std::move(outcome)}));
     }
     context.progress(1.0 - static_cast<double>(--left) / all);

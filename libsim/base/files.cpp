@@ -152,7 +152,11 @@ OpenFile OpenFile::for_appending(const fs::path& file, std::string_view what) {
 OpenFile OpenFile::folder(const fs::path& folder, std::string_view what) {
   OpenFile result;
   result.path_ = folder;
-  result.descriptor_ = open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  result.descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // One that may be written to and not be listed can be held, but not locked.
+  if (result.descriptor_ < 0) {
+    result.descriptor_ = open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  }
   MODCAL_REQUIRE(result.descriptor_ >= 0, "{}: {} cannot be opened: {}", folder.string(), what,
                  std::strerror(errno));
   return result;

@@ -183,5 +183,28 @@ TEST_F(OldFolder, KeepsScriptsThatSubmitDidNotWrite) {
   EXPECT_FALSE(std::filesystem::exists(path("a/slurm")));
 }
 
+TEST_F(OldFolder, KeepsScriptsThatNoCommandWrote) {
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);  // its database and scripts would stay
+  std::filesystem::create_directories(path("a/slurm"));
+  write("a/slurm/run.sh", "mine\n");
+  ASSERT_EQ(modcal("run list.yaml --out a --set scene.duration='0.2 s'").code, 0);
+  EXPECT_EQ(content_of(path("a/slurm/run.sh")), "mine\n");
+}
+
+TEST_F(OldFolder, WithoutAFinishedTaskIsNotMerged) {
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  ASSERT_EQ(modcal("merge a").code, 0);
+  const std::string database = content_of(path("a/results.sqlite"));
+  write("a/journal/shard-1-of-1.journal", "");
+  for (const char* command : {"merge a", "report a"}) {
+    const Outcome outcome = modcal(command);
+    EXPECT_EQ(outcome.code, 3) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("tasks is done, by this program and with its files"));
+  }
+  EXPECT_EQ(content_of(path("a/results.sqlite")), database);
+  EXPECT_THAT(modcal("replay a 0").err, HasSubstr("task 0 is not among those that a has finished"));
+}
+
 }  // namespace
 }  // namespace modcal::old_folder_test

@@ -83,6 +83,16 @@ TEST_F(Store, LetsDifferentShardsShareAFolder) {
   EXPECT_THROW(RunStore(folder(), Shard{}, "p"), InvalidInput);
 }
 
+TEST_F(Store, KeepsAFolderForOneRun) {
+  {
+    const FolderLock whole(folder(), {});
+    EXPECT_THROW(FolderLock(folder(), Shard{}), InvalidInput);
+    EXPECT_THROW(FolderLock(folder(), Shard{1, 2}), InvalidInput);
+  }
+  const FolderLock first(folder(), {1, 2}), second(folder(), {2, 2});
+  EXPECT_THROW(FolderLock(folder(), Shard{}), InvalidInput);
+}
+
 TEST(ShardOption, ReadsAndRefuses) {
   EXPECT_EQ(parse_shard("2/7").index, 2u);
   EXPECT_EQ(parse_shard("2/7").count, 7u);

@@ -1,5 +1,6 @@
 #include "experiments/runs/task_experiment.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -7,6 +8,7 @@
 #include <cstdlib>
 
 #include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal::task_experiment_test {
 namespace {
@@ -24,7 +26,7 @@ class Squares final : public TaskExperiment {
     return {std::to_string(task)};
   }
   std::string fingerprint(std::size_t task, const std::filesystem::path&) const override {
-    return std::to_string(task);
+    return std::to_string(task) + (runs >= written_after ? " of another file" : "");
   }
   std::string run_task(std::size_t task, const StudyContext&) const override {
     if (++runs >= stop_after) wish = true;
@@ -43,7 +45,7 @@ class Squares final : public TaskExperiment {
   StudyResult replay(std::size_t, const StudyContext&) const override { return {}; }
 
   mutable std::atomic<int> runs{0};
-  int stop_after = 1000;
+  int stop_after = 1000, written_after = 1000;
   mutable std::atomic<bool> wish{false};
 
  private:
@@ -79,6 +81,27 @@ TEST_F(TaskList, GoesOnAfterAnInterruptionWithoutRepeatingWork) {
   const auto outcomes = run_tasks(squares, context(), &store, {});
   EXPECT_EQ(squares.runs, 9);
   EXPECT_EQ(squares.sum_up(outcomes, context()).summary, squares.run(context()).summary);
+}
+
+// Task 3 may have read either content of its file: it is no result of both.
+TEST_F(TaskList, EndsWhereAFileItReadsChanges) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  Squares squares(9);
+  squares.written_after = 4;
+  {
+    RunStore store(folder(), {}, "p");
+    EXPECT_THAT(refusal_of([&] { run_tasks(squares, context(), &store, {}); }),
+                testing::HasSubstr("a file that the list reads has changed"));
+  }
+  EXPECT_EQ(squares.runs, 4);
+  // With the file as it is now all of them are run; with the one before all but three.
+  for (const int written_after : {0, 1000}) {
+    squares.written_after = written_after;
+    squares.runs = 0;
+    RunStore store(folder(), {}, "p");
+    run_tasks(squares, context(), &store, {});
+    EXPECT_EQ(squares.runs, written_after == 0 ? 9 : 6);
+  }
 }
 
 TEST_F(TaskList, RunsTheTasksOfAShardAndTakesThoseOfOthersFromTheStore) {
