@@ -54,16 +54,21 @@ Signal signal_of(RecordedChannel& channel, double sample_rate) {
   return {channel.name, channel.unit, sample_rate, std::move(channel.samples)};
 }
 
-ExitCode convert(const ConvertArguments& arguments) {
-  const RecordFormat& target = record_format(arguments.to, arguments.to_format);
+ExitCode convert_functions(const ConvertArguments& arguments) {
+  FileFunctions all = read_functions(arguments.from, arguments.from_format);
+  const std::size_t count = write_functions(arguments.to, arguments.to_format, all, version_text());
+  for (const std::string& text : all.warnings) warn("{}", text);
+  add_to_json("file", arguments.to);
+  add_to_json("channels", count);
+  const std::vector<double>& hertz = all.functions.front().hertz;
+  say("{}: {} function{} of frequency, {} lines from {:g} to {:g} Hz\n", arguments.to, count,
+      count == 1 ? "" : "s", hertz.size(), hertz.front(), hertz.back());
+  return ExitCode::kOk;
+}
+
+ExitCode convert_record(const ConvertArguments& arguments, const RecordFormat& target) {
   MODCAL_REQUIRE(target.write != nullptr, "{}: files of the format {} are read only", arguments.to,
                  target.name);
-  std::error_code error;
-  const auto status = std::filesystem::symlink_status(arguments.to, error);
-  MODCAL_REQUIRE(!std::filesystem::exists(status),
-                 "{}: something of this name stands there, and it is not replaced; choose another "
-                 "name",
-                 arguments.to);
   Recording recording =
       read_record(arguments.from, arguments.from_format,
                   {.sample_rate = arguments.sample_rate, .memory = machine_memory()});
@@ -78,6 +83,21 @@ ExitCode convert(const ConvertArguments& arguments) {
   say("{}: {} channel{}, {} samples at {} Hz\n", arguments.to, signals.size(),
       signals.size() == 1 ? "" : "s", signals.front().size(), recording.sample_rate);
   return ExitCode::kOk;
+}
+
+ExitCode convert(const ConvertArguments& arguments) {
+  const RecordFormat& target = record_format(arguments.to, arguments.to_format);
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(arguments.to, error);
+  MODCAL_REQUIRE(!std::filesystem::exists(status),
+                 "{}: something of this name stands there, and it is not replaced; choose another "
+                 "name",
+                 arguments.to);
+  // A rate that is stated is one of a record in time.
+  const bool is_in_time =
+      std::isfinite(arguments.sample_rate) ||
+      !has_functions_alone(arguments.from, arguments.from_format, machine_memory());
+  return is_in_time ? convert_record(arguments, target) : convert_functions(arguments);
 }
 
 void declare(CLI::App& command, ConvertArguments& arguments) {

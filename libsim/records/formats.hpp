@@ -4,7 +4,7 @@
 #include <span>
 
 #include "libsim/records/record_file.hpp"
-#include "libsim/records/response_functions.hpp"
+#include "libsim/records/stored_channels.hpp"
 
 namespace modcal {
 
@@ -16,10 +16,15 @@ struct RecordFormat {
   /// Keeps every bit of the samples; nothing: the format is only read.
   void (*write)(const std::filesystem::path& path, std::span<const Signal> signals,
                 const std::string& provenance) = nullptr;
-  /// Null: the format keeps no response functions.
-  ResponseFunctions (*read_responses)(const std::filesystem::path& path,
-                                      const std::vector<std::string>& channels,
-                                      FrequencyFunction wanted) = nullptr;
+  /// What stands in a file that may be a function of frequency, headers and lines; null: the format
+  /// keeps none.
+  std::vector<StoredChannel> (*functions)(const std::filesystem::path& path) = nullptr;
+  /// Keeps every bit of values and lines; null: the format is not written with functions.
+  void (*write_functions)(const std::filesystem::path& path,
+                          std::span<const FileFunction> functions,
+                          const std::string& provenance) = nullptr;
+  /// Of functions: power spectra, too, and each may have lines of its own.
+  bool keeps_any_function = false;
 };
 
 /// Those this program was built with.

@@ -31,6 +31,12 @@ const Quantity* quantity_of_code(int code) {
   return found == kQuantities.end() ? nullptr : &*found;
 }
 
+const Quantity* quantity_of_kind(std::string_view kind) {
+  const auto found = std::find_if(kQuantities.begin(), kQuantities.end(),
+                                  [kind](const Quantity& known) { return known.kind == kind; });
+  return found == kQuantities.end() ? nullptr : &*found;
+}
+
 const Quantity* quantity_of_unit(std::string_view unit) {
   if (unit.empty()) return nullptr;
   const auto found = std::find_if(

@@ -17,6 +17,7 @@ struct Quantity {
 
 /// Nothing for a code that is none of them (0: unknown, 1: general).
 const Quantity* quantity_of_code(int code);
+const Quantity* quantity_of_kind(std::string_view kind);
 /// The quantity that is measured in the unit; nothing where none is.
 const Quantity* quantity_of_unit(std::string_view unit);
 

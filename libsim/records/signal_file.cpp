@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
@@ -46,6 +47,33 @@ void require_one_record(std::span<const Signal> signals, std::string_view file) 
     MODCAL_REQUIRE(bad == signal.samples.end(),
                    "{}: sample {} of {} is {}; only numbers are written", file,
                    bad - signal.samples.begin(), signal.quantity, *bad);
+  }
+}
+
+void require_functions(std::span<const FileFunction> functions, std::string_view file) {
+  MODCAL_REQUIRE(!functions.empty(), "{}: there is no function of frequency to write", file);
+  std::set<std::string_view> names;
+  for (const FileFunction& function : functions) {
+    const std::string& name = function.name;
+    MODCAL_REQUIRE(!name.empty() && names.insert(name).second,
+                   "{}: the name \"{}\" of a function is empty or stands there twice; give "
+                   "different names",
+                   file, name);
+    MODCAL_REQUIRE(function.values.size() == function.hertz.size() && function.hertz.size() > 1,
+                   "{}: {} has {} values at {} frequencies; a function needs one value at each of "
+                   "two or more",
+                   file, name, function.values.size(), function.hertz.size());
+    for (std::size_t m = 0; m < function.hertz.size(); ++m) {
+      const double line = function.hertz[m];
+      MODCAL_REQUIRE(std::isfinite(line) && (m == 0 || line > function.hertz[m - 1]),
+                     "{}: frequency {} of {} is {} Hz; frequencies must increase", file, m + 1,
+                     name, line);
+      const Complex& value = function.values[m];
+      MODCAL_REQUIRE(std::isfinite(value.real()) && std::isfinite(value.imag()),
+                     "{}: the value of {} at {} Hz is {} + {}i; only numbers are written: repair "
+                     "it, or leave this frequency out",
+                     file, name, line, value.real(), value.imag());
+    }
   }
 }
 

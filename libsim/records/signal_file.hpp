@@ -3,13 +3,17 @@
 
 #include <span>
 
-#include "libsim/records/recording.hpp"
+#include "libsim/records/response_functions.hpp"
 
 namespace modcal {
 
 /// Throws InvalidInput unless the signals can stand in one file: at least one, of one rate > 0 [Hz]
 /// and one length > 0, with different non-empty names and finite samples.
 void require_one_record(std::span<const Signal> signals, std::string_view file);
+
+/// Throws InvalidInput unless the functions can stand in a file: at least one, with different
+/// non-empty names, two lines [Hz] or more that increase, and finite values.
+void require_functions(std::span<const FileFunction> functions, std::string_view file);
 
 /// Calls write(temporary) and renames the temporary file to `path`; removes it where write throws.
 /// An existing file at `path` is never left half written.

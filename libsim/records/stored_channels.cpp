@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
@@ -18,30 +17,6 @@ bool same_grid(const StoredChannel& a, const StoredChannel& b) {
       a.sample_rate == b.sample_rate || (std::isnan(a.sample_rate) && std::isnan(b.sample_rate));
   const bool is_later = std::abs(a.start - b.start) * a.sample_rate > kSameInstant;
   return same_rate && a.size == b.size && !is_later;
-}
-
-std::string grid_text(const StoredChannel& channel) {
-  if (!channel.other_than_time.empty()) return channel.other_than_time;
-  const std::string rate = std::isnan(channel.sample_rate)
-                               ? std::string("a rate that is not stated")
-                               : fmt::format("{:.9g} Hz", channel.sample_rate);
-  const bool begins_later = std::abs(channel.start) > 0.0;
-  return fmt::format("{} samples at {}{}", channel.size, rate,
-                     begins_later ? fmt::format(" from {:.9g} s on", channel.start) : "");
-}
-
-std::vector<std::string> different_names(const std::vector<StoredChannel>& stored) {
-  std::vector<std::string> names;
-  for (const StoredChannel& channel : stored) {
-    const std::string plain =
-        channel.head.name.empty() ? fmt::format("{}", names.size() + 1) : channel.head.name;
-    std::string name = plain;
-    for (int i = 2; std::find(names.begin(), names.end(), name) != names.end(); ++i) {
-      name = fmt::format("{} ({})", plain, i);
-    }
-    names.push_back(name);
-  }
-  return names;
 }
 
 // What is asked for, or all that can stand in one record with the first channel in time.
@@ -126,18 +101,31 @@ void settle_rate(const StoredChannel& channel, const ReadOptions& options, const
   }
 }
 
-// "g/lbf" is an acceleration over a force, where a library of units has a mass over one.
-std::pair<std::string, std::string> units_of_quotient(const std::string& unit) {
-  const std::size_t stroke = unit.rfind('/');
-  if (stroke == std::string::npos || !is_unit_of(unit.substr(stroke + 1), "N")) return {unit, {}};
-  std::string response = unit.substr(0, stroke);
-  if (response.starts_with('(') && response.ends_with(')')) {
-    response = response.substr(1, response.size() - 2);
-  }
-  return {response, unit.substr(stroke + 1)};
+}  // namespace
+
+std::string grid_text(const StoredChannel& channel) {
+  if (!channel.other_than_time.empty()) return channel.other_than_time;
+  const std::string rate = std::isnan(channel.sample_rate)
+                               ? std::string("a rate that is not stated")
+                               : fmt::format("{:.9g} Hz", channel.sample_rate);
+  const bool begins_later = std::abs(channel.start) > 0.0;
+  return fmt::format("{} samples at {}{}", channel.size, rate,
+                     begins_later ? fmt::format(" from {:.9g} s on", channel.start) : "");
 }
 
-}  // namespace
+std::vector<std::string> different_names(const std::vector<StoredChannel>& stored) {
+  std::vector<std::string> names;
+  for (const StoredChannel& channel : stored) {
+    const std::string plain =
+        channel.head.name.empty() ? fmt::format("{}", names.size() + 1) : channel.head.name;
+    std::string name = plain;
+    for (int i = 2; std::find(names.begin(), names.end(), name) != names.end(); ++i) {
+      name = fmt::format("{} ({})", plain, i);
+    }
+    names.push_back(name);
+  }
+  return names;
+}
 
 double rate_of_period(double period, double resolution) {
   const double rate = 1.0 / period;
@@ -174,67 +162,6 @@ Recording assemble(std::string format, std::vector<StoredChannel> stored,
   }
   if (!options.survey) recording.refuse_problems();
   return recording;
-}
-
-void set_lines(std::span<const double> hertz, StoredChannel& channel,
-               std::function<std::vector<Complex>()> read) {
-  const auto count = static_cast<double>(hertz.size());
-  const double step = hertz.size() < 2 ? 0.0 : (hertz.back() - hertz.front()) / (count - 1.0);
-  const double before = step > 0.0 ? std::round(hertz.front() / step) : -1.0;
-  bool is_even = before >= 0.0 && before < kMostLinesBefore;
-  for (std::size_t m = 0; m < hertz.size() && is_even; ++m) {
-    is_even = std::abs(hertz[m] - (before + static_cast<double>(m)) * step) < 0.01 * step;
-  }
-  if (!is_even) {
-    channel.other_than_time = fmt::format("{} lines that are not even", hertz.size());
-    return;
-  }
-  channel.first_line = before * step;
-  channel.line_step = step;
-  channel.read_response = std::move(read);
-}
-
-ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
-                                     const std::vector<std::string>& channels,
-                                     FrequencyFunction wanted, const std::string& file) {
-  const std::vector<std::string> names = different_names(stored);
-  const std::vector<std::size_t> chosen = find_channels(names, channels, file);
-  const bool wants_coherence = wanted == FrequencyFunction::kCoherence;
-  ResponseFunctions result;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const StoredChannel& channel = stored[chosen[i]];
-    if (!channel.read_response || channel.is_coherence != wants_coherence) {
-      throw WrongChannel(
-          i, fmt::format("{}: channel \"{}\" is no {} over even lines but has {}", file,
-                         names[chosen[i]], wants_coherence ? "coherence" : "response function",
-                         grid_text(channel)));
-    }
-    const StoredChannel& one = stored[chosen[0]];
-    if (channel.size != one.size || channel.first_line != one.first_line ||
-        channel.line_step != one.line_step) {
-      throw WrongChannel(
-          i,
-          fmt::format("{}: channel \"{}\" has {} lines from {:g} Hz, {:g} Hz apart, \"{}\" has {} "
-                      "from {:g} Hz, {:g} Hz apart: one model needs one grid",
-                      file, names[chosen[i]], channel.size, channel.first_line, channel.line_step,
-                      names[chosen[0]], one.size, one.first_line, one.line_step));
-    }
-    const auto before = static_cast<std::size_t>(std::llround(one.first_line / one.line_step));
-    std::vector<Complex> values(before, std::numeric_limits<double>::quiet_NaN());
-    const std::vector<Complex> read = channel.read_response();
-    values.insert(values.end(), read.begin(), read.end());
-    result.grid = {.spacing = 2.0 * std::numbers::pi * one.line_step, .bins = values.size()};
-    const auto [unit, per_unit] = channel.per_unit.empty()
-                                      ? units_of_quotient(channel.head.unit)
-                                      : std::pair(channel.head.unit, channel.per_unit);
-    result.functions.push_back({.name = names[chosen[i]],
-                                .kind = channel.head.kind,
-                                .unit = unit,
-                                .per_unit = per_unit,
-                                .full_scale = channel.head.full_scale,
-                                .values = std::move(values)});
-  }
-  return result;
 }
 
 }  // namespace modcal

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
+#include "libsim/records/frequency_lines.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/response_functions.hpp"
 
@@ -26,12 +28,15 @@ struct StoredChannel {
   /// sample rate.
   std::function<std::vector<double>()> read_times = {};
   double time_resolution = 0.0;  ///< of the largest instant as it was stored, relative
-  /// Of a response function or a coherence: its lines [Hz], the first one a whole number of steps
-  /// from 0, the unit of its force, and its values; null for anything else.
-  double first_line = 0.0, line_step = 0.0;
+  /// Of a function of frequency: what it is, its lines where they are even and the first one lies a
+  /// whole number of steps from 0, its lines one by one [Hz], the unit of its force, and its
+  /// values; null for anything else.
+  FrequencyFunction what = FrequencyFunction::kResponse;
+  EvenLines lines = {};
   std::string per_unit = {};
-  bool is_coherence = false;
+  std::function<std::vector<double>()> read_lines = {};
   std::function<std::vector<Complex>()> read_response = {};
+  MeasuredPlaces places = {};
 };
 
 /// The wanted channels as one record. Unasked those in time that have the first one's rate, length
@@ -42,15 +47,28 @@ struct StoredChannel {
 Recording assemble(std::string format, std::vector<StoredChannel> stored,
                    const ReadOptions& options, const std::string& file);
 
-/// A response function or a coherence at these frequencies [Hz], where they are even to a hundredth
-/// of their distance and the first one lies a whole number of it from 0.
-void set_lines(std::span<const double> hertz, StoredChannel& channel,
+/// Their names, those without one by their number, equal ones told apart: "h1", "h1 (2)".
+std::vector<std::string> different_names(const std::vector<StoredChannel>& stored);
+
+/// How a channel lies in time, or what else it is.
+std::string grid_text(const StoredChannel& channel);
+
+/// A function at these frequencies [Hz], which must increase. They are even where each is so to a
+/// hundredth of their distance and the first one lies a whole number of it from 0.
+void set_lines(const std::shared_ptr<const std::vector<double>>& hertz, StoredChannel& channel,
                std::function<std::vector<Complex>()> read);
+
+/// The same at the first `channel.size` multiples of a distance [Hz] from 0 on.
+void set_multiples(double distance, StoredChannel& channel,
+                   std::function<std::vector<Complex>()> read);
 
 /// The wanted response functions, as read_response_functions() says.
 ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
                                      const std::vector<std::string>& channels,
                                      FrequencyFunction wanted, const std::string& file);
+
+/// All functions of frequency, as read_functions() says.
+FileFunctions assemble_functions(const std::vector<StoredChannel>& stored, const std::string& file);
 
 /// A rate whose period was printed to a relative `resolution`: the whole number of hertz within it,
 /// where there is one.

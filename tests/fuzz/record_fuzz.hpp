@@ -36,6 +36,12 @@ inline void read_as(const std::string& format, std::string_view content) {
                 functions.functions[0].values.size() == functions.grid.bins,
             "a response function of another number of lines");
   }
+  FileFunctions all;
+  if (accepted([&] { all = read_functions(file.path(), format); })) {
+    for (const FileFunction& function : all.functions) {
+      require(function.values.size() == function.hertz.size(), "values without their lines");
+    }
+  }
   if (!is_good) return;
   require(is_inspected, "a record that a run takes cannot be inspected");
   require(report.frames == recording.frames(), "inspect sees another number of samples");

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "libsim/records/record_file.hpp"
-#include "libsim/records/response_functions.hpp"
+#include "libsim/records/stored_channels.hpp"
 
 namespace modcal {
 
@@ -70,10 +69,12 @@ Recording recording_of(const std::shared_ptr<ArrayFile>& content, std::string_vi
 
 /// The columns of complex tables as response functions, those of real ones as coherences. Their
 /// lines [Hz] are a vector called f, freq, frequency or the like, or whole multiples from 0 of a
-/// number called df, in the same structure or around it. Throws InvalidInput as
-/// assemble_responses() does.
-ResponseFunctions responses_of(const std::shared_ptr<ArrayFile>& content,
-                               const std::filesystem::path& path,
-                               const std::vector<std::string>& channels, FrequencyFunction wanted);
+/// number called df, in the same structure or around it; a text `unit` of either counts.
+std::vector<StoredChannel> functions_of(const std::shared_ptr<ArrayFile>& content,
+                                        const std::filesystem::path& path);
+
+// What an array called so is taken for; letters in either case.
+bool is_name_of_time(const std::string& name);
+bool is_name_of_lines(const std::string& name);
 
 }  // namespace modcal

@@ -45,7 +45,7 @@ const NamedArray* nearest(const std::vector<NamedArray>& arrays, const NamedArra
   return best;
 }
 
-bool is_time(const NamedArray& array) { return is_one_of(last_of(array), {"t", "time"}); }
+bool is_time(const NamedArray& array) { return is_name_of_time(array.path.back()); }
 bool is_rate(const NamedArray& array) {
   return array.size() == 1 && array.is_real() &&
          is_one_of(last_of(array), {"sample_rate", "samplerate", "sampling_rate", "samplingrate",
@@ -57,26 +57,10 @@ bool is_period(const NamedArray& array) {
                    {"dt", "ts", "increment", "wf_increment", "sample_period", "delta_t"});
 }
 
-bool is_lines(const NamedArray& array) {
-  return is_one_of(last_of(array), {"f", "freq", "freqs", "frequency", "frequencies", "f_hz"});
-}
+bool is_lines(const NamedArray& array) { return is_name_of_lines(array.path.back()); }
 bool is_line_step(const NamedArray& array) {
   return array.size() == 1 && array.is_real() &&
          is_one_of(last_of(array), {"df", "delta_f", "frequency_step", "frequency_resolution"});
-}
-
-// The lines of a function of as many values, or the first two of even ones; empty where nothing
-// tells them.
-std::vector<double> lines_of(const Content& content, const NamedArray& array) {
-  const std::vector<NamedArray>& arrays = content->arrays();
-  const NamedArray* const lines = nearest(arrays, array, [&array](const NamedArray& other) {
-    return is_lines(other) && other.is_real() && other.is_table() && other.columns() == 1 &&
-           other.rows() == array.rows();
-  });
-  if (lines != nullptr) return content->column(*lines, 0);
-  const NamedArray* const step = nearest(arrays, array, is_line_step);
-  if (step == nullptr) return {};
-  return {0.0, content->number(*step)};
 }
 
 // Right below the array, as an attribute is.
@@ -200,9 +184,36 @@ void add_channels(const Content& content, const std::filesystem::path& path,
   }
 }
 
+// The vector of lines, or the number that they are multiples of; null: nothing tells them.
+const NamedArray* lines_of(const Content& content, const NamedArray& array) {
+  const std::vector<NamedArray>& arrays = content->arrays();
+  const NamedArray* const lines = nearest(arrays, array, [&array](const NamedArray& other) {
+    return is_lines(other) && other.is_real() && other.is_table() && other.columns() == 1 &&
+           other.rows() == array.rows();
+  });
+  return lines != nullptr ? lines : nearest(arrays, array, is_line_step);
+}
+
+// The values of the j-th column of a table.
+std::function<std::vector<Complex>()> values_of(const Content& content, const NamedArray& array,
+                                                std::size_t j) {
+  return [content, array, j] {
+    const std::vector<double> parts = content->column(array, j);
+    std::vector<Complex> values(array.rows());
+    for (std::size_t m = 0; m < values.size(); ++m) {
+      values[m] = array.is_real() ? parts[m] : Complex(parts[2 * m], parts[2 * m + 1]);
+    }
+    return values;
+  };
+}
+
 void add_functions(const Content& content, const std::filesystem::path& path,
                    const NamedArray& array, std::vector<StoredChannel>& functions) {
-  const std::vector<double> lines = lines_of(content, array);
+  const NamedArray* const told = lines_of(content, array);
+  const double hertz = told == nullptr ? 1.0 : unit_in(content, *told, "Hz");
+  const auto lines = std::make_shared<std::vector<double>>();
+  if (told != nullptr) *lines = content->column(*told, 0);
+  for (double& line : *lines) line *= hertz;
   for (std::size_t j = 0; j < array.columns(); ++j) {
     StoredChannel& function = functions.emplace_back();
     function.head.name = array.text();
@@ -210,22 +221,17 @@ void add_functions(const Content& content, const std::filesystem::path& path,
     function.head.unit = unit_of(content, array);
     function.place = fmt::format("{}: {}", path.string(), function.head.name);
     function.size = array.rows();
-    if (lines.empty()) {
+    function.what = array.is_real() ? FrequencyFunction::kCoherence : FrequencyFunction::kResponse;
+    const bool is_step = lines->size() == 1 && lines->front() > 0.0;
+    if (is_step) {
+      set_multiples(lines->front(), function, values_of(content, array, j));
+    } else if (told == nullptr || std::isnan(hertz)) {
       function.other_than_time = fmt::format(
           "{} values without their lines: state them as a vector f [Hz], or a number df",
           array.rows());
-      continue;
+    } else {
+      set_lines(lines, function, values_of(content, array, j));
     }
-    const bool is_complex = !array.is_real();
-    function.is_coherence = !is_complex;
-    set_lines(lines, function, [content, array, j, is_complex] {
-      const std::vector<double> parts = content->column(array, j);
-      std::vector<Complex> values(array.rows());
-      for (std::size_t m = 0; m < values.size(); ++m) {
-        values[m] = is_complex ? Complex(parts[2 * m], parts[2 * m + 1]) : parts[m];
-      }
-      return values;
-    });
   }
 }
 
@@ -249,8 +255,7 @@ Recording recording_of(const Content& content, std::string_view kind,
                   std::move(channels), options, path.string());
 }
 
-ResponseFunctions responses_of(const Content& content, const std::filesystem::path& path,
-                               const std::vector<std::string>& channels, FrequencyFunction wanted) {
+std::vector<StoredChannel> functions_of(const Content& content, const std::filesystem::path& path) {
   std::vector<StoredChannel> functions;
   for (const NamedArray& array : content->arrays()) {
     constexpr std::size_t kMostFunctions = 1 << 12;
@@ -258,7 +263,12 @@ ResponseFunctions responses_of(const Content& content, const std::filesystem::pa
     if (!is_table || is_lines(array) || array.columns() > kMostFunctions) continue;
     add_functions(content, path, array, functions);
   }
-  return assemble_responses(functions, channels, wanted, path.string());
+  return functions;
+}
+
+bool is_name_of_time(const std::string& name) { return is_one_of(lower_case(name), {"t", "time"}); }
+bool is_name_of_lines(const std::string& name) {
+  return is_one_of(lower_case(name), {"f", "freq", "freqs", "frequency", "frequencies", "f_hz"});
 }
 
 }  // namespace modcal

@@ -12,6 +12,13 @@ std::string member_name(hid_t type, unsigned part) {
   return text;
 }
 
+Hdf5Id pair_of_doubles(const std::string& real, const std::string& imaginary) {
+  Hdf5Id type(H5Tcreate(H5T_COMPOUND, 2 * sizeof(double)), H5Tclose);
+  H5Tinsert(type.get(), real.c_str(), 0, H5T_NATIVE_DOUBLE);
+  H5Tinsert(type.get(), imaginary.c_str(), sizeof(double), H5T_NATIVE_DOUBLE);
+  return type;
+}
+
 }  // namespace
 
 bool is_complex(hid_t type) {
@@ -23,13 +30,10 @@ bool is_complex(hid_t type) {
   return names == "r i" || names == "re im" || names == "real imag" || names == "real imaginary";
 }
 
+Hdf5Id complex_as_numpy() { return pair_of_doubles("r", "i"); }
+
 Hdf5Id complex_in_memory(hid_t stored) {
-  Hdf5Id type(H5Tcreate(H5T_COMPOUND, 2 * sizeof(double)), H5Tclose);
-  for (unsigned part = 0; part < 2; ++part) {
-    H5Tinsert(type.get(), member_name(stored, part).c_str(), part * sizeof(double),
-              H5T_NATIVE_DOUBLE);
-  }
-  return type;
+  return pair_of_doubles(member_name(stored, 0), member_name(stored, 1));
 }
 
 }  // namespace modcal

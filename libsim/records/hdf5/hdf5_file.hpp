@@ -2,11 +2,10 @@
 #pragma once
 
 #include <mutex>
-#include <span>
 #include <string>
 
-#include "libsim/records/record_file.hpp"
-#include "libsim/records/response_functions.hpp"
+#include "libsim/records/arrays/written_arrays.hpp"
+#include "libsim/records/stored_channels.hpp"
 
 namespace modcal {
 
@@ -18,14 +17,11 @@ std::mutex& hdf5_lock();
 /// other files are not read. Throws InvalidInput for what is no whole HDF5 file.
 Recording read_hdf5(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Response functions and coherences as responses_of() reads them.
-ResponseFunctions read_hdf5_responses(const std::filesystem::path& path,
-                                      const std::vector<std::string>& channels,
-                                      FrequencyFunction wanted);
+/// Response functions and coherences as functions_of() lists them.
+std::vector<StoredChannel> hdf5_functions(const std::filesystem::path& path);
 
-/// Writes a dataset of doubles a signal with the attributes `unit` and `name`, and `sample_rate`
-/// [Hz] and `provenance` of the file.
-void write_hdf5(const std::filesystem::path& path, std::span<const Signal> signals,
-                const std::string& provenance);
+/// Writes a dataset an array with the attributes `unit` and `name`, the axis as an attribute of the
+/// file or a dataset, and `provenance`. Throws InvalidInput where it cannot be written.
+void write_hdf5(const std::filesystem::path& path, const WrittenArrays& arrays);
 
 }  // namespace modcal

@@ -7,10 +7,8 @@ Recording read_hdf5(const std::filesystem::path& path, const ReadOptions& option
   return recording_of(std::make_shared<Hdf5Content>(path), "HDF5 file", path, options);
 }
 
-ResponseFunctions read_hdf5_responses(const std::filesystem::path& path,
-                                      const std::vector<std::string>& channels,
-                                      FrequencyFunction wanted) {
-  return responses_of(std::make_shared<Hdf5Content>(path), path, channels, wanted);
+std::vector<StoredChannel> hdf5_functions(const std::filesystem::path& path) {
+  return functions_of(std::make_shared<Hdf5Content>(path), path);
 }
 
 }  // namespace modcal

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "libsim/base/error.hpp"
+#include "libsim/records/hdf5/hdf5_complex.hpp"
 #include "libsim/records/hdf5/hdf5_content.hpp"
 #include "libsim/records/hdf5/hdf5_file.hpp"
 #include "libsim/records/signal_file.hpp"
@@ -27,22 +28,30 @@ class Hdf5Writer {
                       H5Aclose);
     good(made.good() ? H5Awrite(made.get(), type, value) : -1);
   }
-  void add_signal(const Signal& signal) {
-    std::string link = signal.quantity;
+  // The link's own name is left to what tells the axis.
+  void add_array(const WrittenArray& array, const WrittenArrays& all) {
+    std::string link = array.name;
     std::replace(link.begin(), link.end(), '/', '_');
     if (link == ".") link = "_";
     const std::string plain = link;
-    for (int i = 2; !links_.insert(link).second; ++i) link = fmt::format("{}_{}", plain, i);
-    const hsize_t size = signal.size();
+    for (int i = 2; all.is_for_axis(link) || !links_.insert(link).second; ++i) {
+      link = fmt::format("{}_{}", plain, i);
+    }
+    const Hdf5Id number =
+        array.is_complex ? complex_as_numpy() : Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose);
+    const Hdf5Id dataset = add_dataset(link, number.get(), array.size(), array.numbers.data());
+    add_text(dataset.get(), "name", array.name);
+    add_text(dataset.get(), "unit", array.unit);
+  }
+  Hdf5Id add_dataset(const std::string& link, hid_t number, hsize_t size,
+                     const double* data) const {
     const Hdf5Id space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-    const Hdf5Id dataset(H5Dcreate2(file_.get(), link.c_str(), H5T_NATIVE_DOUBLE, space.get(),
-                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Dclose);
-    good(dataset.good() ? H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                                   signal.samples.data())
+    Hdf5Id dataset(H5Dcreate2(file_.get(), link.c_str(), number, space.get(), H5P_DEFAULT,
+                              H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
+    good(dataset.good() ? H5Dwrite(dataset.get(), number, H5S_ALL, H5S_ALL, H5P_DEFAULT, data)
                         : -1);
-    add_text(dataset.get(), "name", signal.quantity);
-    add_text(dataset.get(), "unit", signal.unit);
+    return dataset;
   }
   hid_t root() const { return file_.get(); }
   void finish() const { good(H5Fflush(file_.get(), H5F_SCOPE_LOCAL)); }
@@ -64,18 +73,22 @@ class Hdf5Writer {
 
 }  // namespace
 
-void write_hdf5(const std::filesystem::path& path, std::span<const Signal> signals,
-                const std::string& provenance) {
+void write_hdf5(const std::filesystem::path& path, const WrittenArrays& arrays) {
   const std::string name = path.string();
-  require_one_record(signals, name);
   replace_file(path, [&](const std::filesystem::path& temporary) {
     const std::lock_guard lock(hdf5_lock());
     Hdf5Writer writer(temporary, name);
     MODCAL_REQUIRE(writer.root() >= 0, "{}: cannot be written; check the folder", name);
-    const double rate = signals.front().sample_rate;
-    writer.add_attribute(writer.root(), "sample_rate", H5T_NATIVE_DOUBLE, &rate);
-    writer.add_text(writer.root(), "provenance", provenance);
-    for (const Signal& signal : signals) writer.add_signal(signal);
+    if (arrays.has_lines()) {
+      const Hdf5Id lines = writer.add_dataset(arrays.axis, H5T_NATIVE_DOUBLE,
+                                              arrays.axis_values.size(), arrays.axis_values.data());
+      writer.add_text(lines.get(), "unit", "Hz");
+    } else {
+      writer.add_attribute(writer.root(), arrays.axis.c_str(), H5T_NATIVE_DOUBLE,
+                           arrays.axis_values.data());
+    }
+    writer.add_text(writer.root(), "provenance", arrays.provenance);
+    for (const WrittenArray& array : arrays.arrays) writer.add_array(array, arrays);
     writer.finish();
   });
 }

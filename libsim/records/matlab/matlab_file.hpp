@@ -1,11 +1,10 @@
 // MATLAB's MAT files, versions 4, 5 and 7.3, by libmatio.
 #pragma once
 
-#include <span>
 #include <string>
 
-#include "libsim/records/record_file.hpp"
-#include "libsim/records/response_functions.hpp"
+#include "libsim/records/arrays/written_arrays.hpp"
+#include "libsim/records/stored_channels.hpp"
 
 namespace modcal {
 
@@ -19,15 +18,12 @@ inline constexpr const char* kMatlabHeads = "modcal";
 /// other files state no units. Throws InvalidInput for what is no whole MAT file.
 Recording read_matlab(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Response functions and coherences as responses_of() reads them.
-ResponseFunctions read_matlab_responses(const std::filesystem::path& path,
-                                        const std::vector<std::string>& channels,
-                                        FrequencyFunction wanted);
+/// Response functions and coherences as functions_of() lists them.
+std::vector<StoredChannel> matlab_functions(const std::filesystem::path& path);
 
-/// Writes version 5: a column a signal, `sample_rate`, and a structure `modcal` with names and
-/// units. An existing file is replaced only when the new one is complete. Throws InvalidInput where
-/// it cannot be written.
-void write_matlab(const std::filesystem::path& path, std::span<const Signal> signals,
-                  const std::string& provenance);
+/// Writes version 5: a column an array, the axis, and a structure `modcal` with names and units.
+/// An existing file is replaced only when the new one is complete. Throws InvalidInput where it
+/// cannot be written.
+void write_matlab(const std::filesystem::path& path, const WrittenArrays& arrays);
 
 }  // namespace modcal

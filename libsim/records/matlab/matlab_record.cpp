@@ -7,10 +7,8 @@ Recording read_matlab(const std::filesystem::path& path, const ReadOptions& opti
   return recording_of(std::make_shared<MatlabContent>(path), "MAT file", path, options);
 }
 
-ResponseFunctions read_matlab_responses(const std::filesystem::path& path,
-                                        const std::vector<std::string>& channels,
-                                        FrequencyFunction wanted) {
-  return responses_of(std::make_shared<MatlabContent>(path), path, channels, wanted);
+std::vector<StoredChannel> matlab_functions(const std::filesystem::path& path) {
+  return functions_of(std::make_shared<MatlabContent>(path), path);
 }
 
 }  // namespace modcal

@@ -18,10 +18,22 @@ Variable created(matvar_t* variable) {
   return {variable, &Mat_VarFree};
 }
 
-Variable column(const std::string& name, const std::vector<double>& samples) {
+Variable column(const std::string& name, std::span<const double> samples) {
   std::size_t dims[] = {samples.size(), 1};
   return created(Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims,
                                const_cast<double*>(samples.data()), MAT_F_DONT_COPY_DATA));
+}
+
+// MAT files keep the real parts before the imaginary ones.
+Variable complex_column(const std::string& name, const WrittenArray& array) {
+  std::size_t dims[] = {array.size(), 1};
+  std::vector<double> parts[2];
+  for (std::size_t i = 0; i < array.numbers.size(); ++i) {
+    parts[i % 2].push_back(array.numbers[i]);
+  }
+  mat_complex_split_t split{parts[0].data(), parts[1].data()};
+  return created(
+      Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, &split, MAT_F_COMPLEX));
 }
 
 Variable text(const std::string& letters) {
@@ -40,14 +52,17 @@ Variable structure(const char* name, const std::vector<std::string>& fields) {
 
 // A name that MATLAB takes for a variable: letters, digits and _, a letter first, 63 at the most
 // with the number of another one of that name.
-std::string variable_name(const std::string& quantity, std::set<std::string>& taken) {
+std::string variable_name(const std::string& quantity, const WrittenArrays& arrays,
+                          std::set<std::string>& taken) {
   std::string name;
   for (const char letter : quantity.substr(0, 58)) {
     name += std::isalnum(static_cast<unsigned char>(letter)) ? letter : '_';
   }
   if (!std::isalpha(static_cast<unsigned char>(name[0]))) name = "x" + name;
   const std::string plain = name;
-  for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", plain, i);
+  for (int i = 2; arrays.is_for_axis(name) || !taken.insert(name).second; ++i) {
+    name = fmt::format("{}_{}", plain, i);
+  }
   return name;
 }
 
@@ -55,10 +70,12 @@ void set(matvar_t& structure, const std::string& field, Variable value) {
   Mat_VarSetStructFieldByName(&structure, field.c_str(), 0, value.release());
 }
 
-void write_all(mat_t* file, std::span<const Signal> signals, const std::string& provenance) {
+void write_all(mat_t* file, const WrittenArrays& arrays) {
   std::set<std::string> taken = {kMatlabHeads, "sample_rate", "t", "time", "fs", "dt"};
   std::vector<std::string> names;
-  for (const Signal& signal : signals) names.push_back(variable_name(signal.quantity, taken));
+  for (const WrittenArray& array : arrays.arrays) {
+    names.push_back(variable_name(array.name, arrays, taken));
+  }
   bool good = true;
   const auto write = [&](const Variable& variable) {
     good = good && Mat_VarWrite(file, variable.get(), MAT_COMPRESSION_NONE) == 0;
@@ -66,33 +83,33 @@ void write_all(mat_t* file, std::span<const Signal> signals, const std::string& 
   std::vector<std::string> fields = names;
   fields.emplace_back("provenance");
   const Variable heads = structure(kMatlabHeads, fields);
-  for (std::size_t i = 0; i < signals.size(); ++i) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     Variable head = structure(nullptr, {"name", "unit"});
-    set(*head, "name", text(signals[i].quantity));
-    set(*head, "unit", text(signals[i].unit));
+    set(*head, "name", text(arrays.arrays[i].name));
+    set(*head, "unit", text(arrays.arrays[i].unit));
     set(*heads, names[i], std::move(head));
   }
-  set(*heads, "provenance", text(provenance));
-  const std::vector<double> rate = {signals.front().sample_rate};
-  write(column("sample_rate", rate));
-  for (std::size_t i = 0; i < signals.size(); ++i) write(column(names[i], signals[i].samples));
+  set(*heads, "provenance", text(arrays.provenance));
+  write(column(arrays.axis, arrays.axis_values));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const WrittenArray& array = arrays.arrays[i];
+    write(array.is_complex ? complex_column(names[i], array) : column(names[i], array.numbers));
+  }
   write(heads);
   MODCAL_REQUIRE(good, "writing failed");
 }
 
 }  // namespace
 
-void write_matlab(const std::filesystem::path& path, std::span<const Signal> signals,
-                  const std::string& provenance) {
+void write_matlab(const std::filesystem::path& path, const WrittenArrays& arrays) {
   const std::string name = path.string();
-  require_one_record(signals, name);
   replace_file(path, [&](const std::filesystem::path& temporary) {
     mat_t* const file =
         Mat_CreateVer(temporary.c_str(), "MATLAB 5.0 MAT-file, written by modcal", MAT_FT_MAT5);
     MODCAL_REQUIRE(file != nullptr, "{}: cannot be written; check the folder", name);
     std::string failure;
     try {
-      write_all(file, signals, provenance);
+      write_all(file, arrays);
     } catch (const InvalidInput& error) {
       failure = error.what();
     }

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "libsim/records/record_file.hpp"
-#include "libsim/records/response_functions.hpp"
+#include "libsim/records/arrays/written_arrays.hpp"
+#include "libsim/records/stored_channels.hpp"
 
 namespace modcal {
 
@@ -15,26 +15,22 @@ namespace modcal {
 /// of Python are never unpickled.
 Recording read_npy(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Response functions and coherences as responses_of() reads them.
-ResponseFunctions read_npy_responses(const std::filesystem::path& path,
-                                     const std::vector<std::string>& channels,
-                                     FrequencyFunction wanted);
+/// Response functions and coherences as functions_of() lists them.
+std::vector<StoredChannel> npy_functions(const std::filesystem::path& path);
 
 /// Reads the arrays of an archive as recording_of() says; checksums are compared.
 Recording read_npz(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Response functions and coherences as responses_of() reads them.
-ResponseFunctions read_npz_responses(const std::filesystem::path& path,
-                                     const std::vector<std::string>& channels,
-                                     FrequencyFunction wanted);
+/// Response functions and coherences as functions_of() lists them.
+std::vector<StoredChannel> npz_functions(const std::filesystem::path& path);
 
 /// Writes a structured array of doubles: t [s] and a field a signal, "R1 [N]". Every bit of the
 /// samples is kept.
 void write_npy(const std::filesystem::path& path, std::span<const Signal> signals,
                const std::string& provenance);
 
-/// Writes an array of doubles a signal by its name, its unit as "NAME.unit", and sample_rate [Hz].
-void write_npz(const std::filesystem::path& path, std::span<const Signal> signals,
-               const std::string& provenance);
+/// Writes an array by its name, its unit as "NAME.unit", and the axis. Throws InvalidInput for a
+/// name that the axis has, and where the file cannot be written.
+void write_npz(const std::filesystem::path& path, const WrittenArrays& arrays);
 
 }  // namespace modcal

@@ -131,14 +131,12 @@ Recording read_npz(const Path& path, const ReadOptions& options) {
   return recording_of(arrays_of(path), "NumPy archive", path, options);
 }
 
-ResponseFunctions read_npy_responses(const Path& path, const std::vector<std::string>& channels,
-                                     FrequencyFunction wanted) {
-  return responses_of(array_of(path), path, channels, wanted);
+std::vector<StoredChannel> npy_functions(const Path& path) {
+  return functions_of(array_of(path), path);
 }
 
-ResponseFunctions read_npz_responses(const Path& path, const std::vector<std::string>& channels,
-                                     FrequencyFunction wanted) {
-  return responses_of(arrays_of(path), path, channels, wanted);
+std::vector<StoredChannel> npz_functions(const Path& path) {
+  return functions_of(arrays_of(path), path);
 }
 
 }  // namespace modcal

@@ -6,6 +6,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/records/arrays/array_file.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/numpy/npy_header.hpp"
 #include "libsim/records/numpy/numpy_file.hpp"
@@ -28,14 +29,11 @@ std::string python_text(std::string_view text) {
   return result + "'";
 }
 
-void require_plain_names(std::span<const Signal> signals, const std::string& file) {
-  for (const Signal& signal : signals) {
-    const std::string name = signal.quantity + signal.unit;
-    MODCAL_REQUIRE(std::ranges::none_of(
-                       name, [](char letter) { return static_cast<unsigned char>(letter) < ' '; }),
-                   "{}: the name of channel {} has a control character; rename it", file,
-                   signal.quantity);
-  }
+void require_plain_name(const std::string& name, const std::string& unit, const std::string& file) {
+  MODCAL_REQUIRE(
+      std::ranges::none_of(name + unit,
+                           [](char letter) { return static_cast<unsigned char>(letter) < ' '; }),
+      "{}: the name of channel {} has a control character; rename it", file, name);
 }
 
 // What a member of the archive is made of; its parts must outlive it.
@@ -124,7 +122,13 @@ std::span<const char> bytes_of(std::span<const double> numbers) {
 void write_npy(const Path& path, std::span<const Signal> signals, const std::string&) {
   const std::string name = path.string();
   require_one_record(signals, name);
-  require_plain_names(signals, name);
+  for (const Signal& signal : signals) {
+    require_plain_name(signal.quantity, signal.unit, name);
+    MODCAL_REQUIRE(!is_name_of_time(signal.quantity),
+                   "{}: a field \"{}\" of an array would be taken for the instants; rename the "
+                   "channel, or write another format",
+                   name, signal.quantity);
+  }
   const std::size_t size = signals.front().size();
   const double rate = signals.front().sample_rate;
   std::string fields = fmt::format("[({}, '{}')", python_text("t [s]"), kDouble);
@@ -146,21 +150,32 @@ void write_npy(const Path& path, std::span<const Signal> signals, const std::str
   });
 }
 
-void write_npz(const Path& path, std::span<const Signal> signals, const std::string& provenance) {
+void write_npz(const Path& path, const WrittenArrays& arrays) {
   const std::string name = path.string();
-  require_one_record(signals, name);
-  require_plain_names(signals, name);
+  for (const WrittenArray& array : arrays.arrays) {
+    require_plain_name(array.name, array.unit, name);
+    MODCAL_REQUIRE(!arrays.is_for_axis(array.name),
+                   "{}: an array \"{}\" of an NPZ file would be taken for the {}; rename the "
+                   "channel, or write another format",
+                   name, array.name, arrays.has_lines() ? "frequencies" : "sampling");
+  }
   replace_file(path, [&](const Path& temporary) {
     NumpyWriter writer(name);
-    const std::string number = npy_header_text(fmt::format("'{}'", kDouble), "()");
-    writer.add("sample_rate", number, bytes_of({&signals.front().sample_rate, 1}));
-    const std::string header =
-        npy_header_text(fmt::format("'{}'", kDouble), fmt::format("({},)", signals.front().size()));
-    for (const Signal& signal : signals) {
-      writer.add(signal.quantity, header, bytes_of(signal.samples));
-      writer.add(signal.quantity + ".unit", text_array(signal.unit), {});
+    const auto header = [](bool is_complex, const std::string& shape) {
+      return npy_header_text(
+          fmt::format("'{}{}'", kDouble[0], is_complex ? "c16" : kDouble.substr(1)), shape);
+    };
+    const auto vector_shape = [](std::size_t size) { return fmt::format("({},)", size); };
+    writer.add(arrays.axis,
+               header(false, arrays.has_lines() ? vector_shape(arrays.axis_values.size()) : "()"),
+               bytes_of(arrays.axis_values));
+    if (arrays.has_lines()) writer.add(arrays.axis + ".unit", text_array("Hz"), {});
+    for (const WrittenArray& array : arrays.arrays) {
+      writer.add(array.name, header(array.is_complex, vector_shape(array.size())),
+                 bytes_of(array.numbers));
+      writer.add(array.name + ".unit", text_array(array.unit), {});
     }
-    writer.add("provenance", text_array(provenance), {});
+    writer.add("provenance", text_array(arrays.provenance), {});
     writer.write_to(temporary);
   });
 }

@@ -4,8 +4,7 @@
 #include <complex>
 #include <optional>
 
-#include "libsim/records/record_file.hpp"
-#include "libsim/records/response_functions.hpp"
+#include "libsim/records/stored_channels.hpp"
 #include "libsim/records/universal/line_file.hpp"
 
 namespace modcal {
@@ -22,7 +21,7 @@ struct UniversalFunction {
   int type = 0;  ///< 0 general, 1 time, 2 auto spectrum, 3 cross spectrum, 4 FRF, 6 coherence, …
   std::string name;  ///< entity with node and direction, or the ID line
   std::array<std::string, 5> id_lines;
-  int response_node = 0, response_direction = 0, reference_node = 0, reference_direction = 0;
+  MeasuredPlaces places;
   bool is_double = false, is_complex = false, is_even = true;
   std::uint64_t size = 0;
   double first = 0.0, step = 0.0;  ///< of the abscissa, where it is even
@@ -63,13 +62,18 @@ UniversalValues read_universal_values(const std::filesystem::path& path,
 /// The functions of time as channels.
 Recording read_universal(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Its frequency response functions, as read_response_functions() says.
-ResponseFunctions read_universal_responses(const std::filesystem::path& path,
-                                           const std::vector<std::string>& channels,
-                                           FrequencyFunction wanted);
+/// Its functions, those of frequency with their lines.
+std::vector<StoredChannel> universal_functions(const std::filesystem::path& path);
 
 /// One dataset 58b in doubles for each signal.
 void write_universal(const std::filesystem::path& path, std::span<const Signal> signals,
                      const std::string& provenance);
+
+/// The same for each function of frequency, as what it is, with even lines where a formula gives
+/// them to the last bit. Throws InvalidInput as write_functions() says, and for names and units
+/// that are too long.
+void write_universal_functions(const std::filesystem::path& path,
+                               std::span<const FileFunction> functions,
+                               const std::string& provenance);
 
 }  // namespace modcal

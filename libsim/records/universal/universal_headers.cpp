@@ -101,12 +101,14 @@ UniversalAxis axis_of(const Columns& line) {
 std::string name_of(const UniversalFunction& function, const std::string& entity) {
   if (entity.empty()) {
     const std::string id = known_field(function.id_lines[0]);
-    return id.empty() && function.response_node > 0
-               ? fmt::format("node {} {:+d}", function.response_node, function.response_direction)
+    return id.empty() && function.places.response_node > 0
+               ? fmt::format("node {} {:+d}", function.places.response_node,
+                             function.places.response_direction)
                : id;
   }
-  if (function.response_node == 0) return entity;
-  return fmt::format("{} {} {:+d}", entity, function.response_node, function.response_direction);
+  if (function.places.response_node == 0) return entity;
+  return fmt::format("{} {} {:+d}", entity, function.places.response_node,
+                     function.places.response_direction);
 }
 
 void HeaderReader::read_function(const Columns& heading) {
@@ -115,10 +117,10 @@ void HeaderReader::read_function(const Columns& heading) {
   for (std::string& id : function.id_lines) id = std::string(trimmed(line().text(0, 80)));
   const Columns dof = line();
   function.type = dof.small(0, 5);
-  function.response_node = dof.small(41, 10);
-  function.response_direction = dof.small(51, 4);
-  function.reference_node = dof.small(66, 10);
-  function.reference_direction = dof.small(76, 4);
+  function.places.response_node = dof.small(41, 10);
+  function.places.response_direction = dof.small(51, 4);
+  function.places.reference_node = dof.small(66, 10);
+  function.places.reference_direction = dof.small(76, 4);
   function.name = name_of(function, known_field(dof.text(31, 10)));
   const Columns form = line();
   const int data_type = form.small(0, 10);

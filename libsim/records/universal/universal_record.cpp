@@ -8,12 +8,13 @@
 #include "libsim/records/stored_channels.hpp"
 #include "libsim/records/tuning.hpp"
 #include "libsim/records/universal/universal_file.hpp"
+#include "libsim/records/universal/universal_types.hpp"
 
 namespace modcal {
 namespace {
 
 enum SpecificData : int { kTime = 17, kFrequency = 18 };
-enum FunctionType : int { kTimeResponse = 1, kFrequencyResponse = 4, kCoherence = 6 };
+enum FunctionType : int { kTimeResponse = 1 };
 constexpr std::string_view kRateLine = "sample_rate: ";
 
 std::string_view type_name(int type) {
@@ -83,24 +84,58 @@ double force_factor(const UniversalAxis& axis, const std::optional<UniversalUnit
   return axis.unit.empty() ? force.full_scale : 1.0;
 }
 
-// A response function or coherence of even lines over frequency that begin at a whole number of
-// steps.
-void set_response(const std::filesystem::path& path, const UniversalFunction& function,
+// A file that modcal wrote has even lines to their last digit in its last ID line.
+EvenLines lines_of(const UniversalFunction& function) {
+  EvenLines stated;
+  const bool is_ours = read_lines_text(function.id_lines[4], stated);
+  const bool agrees =
+      std::abs(stated.spacing() / function.step - 1.0) <= 2 * function.step_resolution &&
+      std::abs(stated.begin() - function.first) <= 1e-5 * function.first;
+  return is_ours && agrees ? stated : printed_lines(function.first, function.step);
+}
+
+// SI where the factors of dataset 164 alone tell it; of a power its square, whose unit is not told.
+void set_function_unit(const UniversalFunction& function,
+                       const std::optional<UniversalUnits>& units, StoredChannel& channel) {
+  channel.per_unit = function.denominator.unit;
+  if (channel.what == FrequencyFunction::kResponse) {
+    channel.head.full_scale /= force_factor(function.denominator, units);
+  } else if (channel.what != FrequencyFunction::kCoherence) {
+    channel.head.unit = function.ordinate.unit;
+    channel.head.full_scale *= channel.head.full_scale;
+  }
+}
+
+// A function over frequency that is read; evenness of lines that stand one by one is told later.
+void set_function(const std::filesystem::path& path, const UniversalFunction& function,
                   const std::optional<UniversalUnits>& units, StoredChannel& channel) {
-  const double step = function.step, lines = function.first / step;
-  const bool is_even = function.is_even && step > 0.0 && lines >= 0.0 && lines < kMostLinesBefore &&
-                       std::abs(lines - std::round(lines)) < 1e-3;
-  channel.is_coherence = function.type == kCoherence && !function.is_complex;
-  const bool is_response = function.type == kFrequencyResponse && function.is_complex;
-  if (!(is_response || channel.is_coherence) || !is_even ||
-      (function.abscissa.code != kFrequency && function.abscissa.code > 1)) {
+  const std::optional<FrequencyFunction> what = what_of_type(function.type);
+  const bool is_over_frequency =
+      function.abscissa.code == kFrequency || function.abscissa.code <= 1;
+  if (!what || !is_over_frequency) return;
+  if (function.is_complex != (*what == FrequencyFunction::kResponse)) return;
+  const std::string& unit = function.abscissa.unit;
+  const double hertz = is_unit_of(unit, "Hz") ? to_si(1.0, unit, "Hz") : 1.0;
+  channel.what = *what;
+  channel.places = function.places;
+  set_function_unit(function, units, channel);
+  channel.read_response = [path, function] { return read_universal_values(path, function).values; };
+  if (!function.is_even) {
+    channel.read_lines = [path, function, hertz] {
+      std::vector<double> lines = read_universal_values(path, function).abscissa;
+      for (double& line : lines) line *= hertz;
+      return lines;
+    };
     return;
   }
-  channel.first_line = function.first;
-  channel.line_step = step;
-  channel.per_unit = function.denominator.unit;
-  channel.head.full_scale /= force_factor(function.denominator, units);
-  channel.read_response = [path, function] { return read_universal_values(path, function).values; };
+  EvenLines even = lines_of(function);
+  even.times *= hertz;
+  channel.read_lines = [even, size = function.size] { return even.hertz(size); };
+  const double before = even.begin() / even.spacing();
+  if (even.step > 0.0 && before >= 0.0 && before < kMostLinesBefore &&
+      std::abs(before - std::round(before)) < 1e-3) {
+    channel.lines = even;
+  }
 }
 
 StoredChannel stored(const std::filesystem::path& path, const UniversalFunction& function,
@@ -118,7 +153,7 @@ StoredChannel stored(const std::filesystem::path& path, const UniversalFunction&
         "{}{} with {} values over {}", function.is_complex ? "complex " : "",
         type_name(function.type), function.size,
         function.abscissa.label.empty() ? "another axis than time" : function.abscissa.label);
-    set_response(path, function, units, channel);
+    set_function(path, function, units, channel);
     return channel;
   }
   set_rate(function, channel);
@@ -164,10 +199,14 @@ Recording read_universal(const std::filesystem::path& path, const ReadOptions& o
   return assemble(std::move(format), std::move(channels), options, path.string());
 }
 
-ResponseFunctions read_universal_responses(const std::filesystem::path& path,
-                                           const std::vector<std::string>& channels,
-                                           FrequencyFunction wanted) {
-  return assemble_responses(channels_of(path, {}), channels, wanted, path.string());
+std::vector<StoredChannel> universal_functions(const std::filesystem::path& path) {
+  std::vector<StoredChannel> channels = channels_of(path, {});
+  for (StoredChannel& channel : channels) {
+    if (!channel.read_response || channel.lines.step > 0.0) continue;
+    const auto lines = std::make_shared<const std::vector<double>>(channel.read_lines());
+    set_lines(lines, channel, std::exchange(channel.read_response, nullptr));
+  }
+  return channels;
 }
 
 }  // namespace modcal

@@ -77,5 +77,80 @@ TEST_F(Convert, ADamagedFileIsRefusedWithItsPlace) {
   EXPECT_THAT(refused.err, ContainsRegex("c[.]uff:[0-9]+: dataset 58b: the file ends at byte 700"));
 }
 
+const char* const kFunctions =
+    "frequency [Hz],h1 [m/s2/N],h1 imaginary [m/s2/N],c1\n0,1,0,1\n0.1,0.5,-1e-3,0.9\n"
+    "0.2,0.3333333333333333,7,0.8\n0.30000000000000004,2,3,1\n";
+
+TEST_F(Convert, FunctionsOfFrequencyKeepEveryBitInEveryFormat) {
+  write("f.csv", kFunctions);
+  const FileFunctions first = read_functions(path("f.csv"), "auto");
+  std::string from = "f.csv";
+  for (const std::string to : {"f.uff", "f.mat", "f.npz", "f.h5", "back.csv"}) {
+    const Outcome converted = modcal(fmt::format("convert {} {}", from, to));
+    ASSERT_EQ(converted.code, 0) << converted.err;
+    EXPECT_EQ(converted.err, "") << to;
+    EXPECT_THAT(converted.out,
+                HasSubstr(to + ": 2 functions of frequency, 4 lines from 0 to 0.3 Hz"));
+    const FileFunctions read = read_functions(path(to), "auto");
+    ASSERT_EQ(read.functions.size(), 2u) << to;
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(read.functions[i].name, first.functions[i].name) << to;
+      EXPECT_EQ(read.functions[i].unit, first.functions[i].unit) << to;
+      EXPECT_EQ(read.functions[i].what, first.functions[i].what) << to;
+      EXPECT_EQ(read.functions[i].hertz, first.functions[i].hertz) << to;
+      EXPECT_EQ(read.functions[i].values, first.functions[i].values) << to;
+    }
+    from = to;
+  }
+}
+
+TEST_F(Convert, FunctionsOfFrequencyAreNoSound) {
+  write("f.csv", kFunctions);
+  for (const char* to : {"f.wav", "f.lvm", "f.npy"}) {
+    const Outcome refused = modcal(fmt::format("convert f.csv {}", to));
+    EXPECT_EQ(refused.code, 3);
+    EXPECT_THAT(refused.err, HasSubstr("these formats hold them: csv, uff, mat, npz, hdf5"));
+    EXPECT_FALSE(std::filesystem::exists(path(to)));
+  }
+}
+
+TEST_F(Convert, ARecordInTimeGoesBeforeFunctions) {
+  write("f.csv", kFunctions);
+  ASSERT_EQ(modcal("convert f.csv f.uff").code, 0);
+  ASSERT_EQ(modcal("convert a.csv a.uff").code, 0);
+  write("both.uff", content_of(path("f.uff")) + content_of(path("a.uff")));
+  const Outcome both = modcal("convert both.uff both.mat");
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr("2 channels, 3 samples at 51200 Hz"));
+  EXPECT_THAT(both.err, HasSubstr("\"h1\" [m/s2] is left out: complex frequency response"));
+}
+
+TEST_F(Convert, AFileWithoutEitherAsksForTheRate) {
+  write("x.csv", "f [N],x [m]\n1,2\n3,4\n4,5\n");
+  const Outcome refused = modcal("convert x.csv x.mat");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("the sample rate is not known; state sample_rate"));
+}
+
+TEST_F(Convert, UnevenInstantsSayWhatToDo) {
+  ASSERT_EQ(modcal("convert a.csv b.uff").code, 0);
+  std::string text = content_of(path("b.uff"));
+  text.resize(text.find("    -1\n", 10));
+  const std::string head = text.substr(text.find('\n', 8) + 1);
+  std::string uneven = "    -1\n    58\n" + head.substr(0, head.find("         4"));
+  uneven += "         4         5         0  0.00000E+00  0.00000E+00  0.00000E+00\n";
+  for (const char* axis : {"17", "12", " 0", " 0"}) {
+    uneven += fmt::format("        {}    0    0    0 NONE                 NONE\n", axis);
+  }
+  for (const char* t : {"0.00000", "1.00000", "2.30000", "3.00000", "4.00000"}) {
+    uneven += fmt::format("  {}E+00  1.000000000000E+00\n", t);
+  }
+  write("c.uff", uneven + "    -1\n");
+  const Outcome refused = modcal("convert c.uff c.mat");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("sampling is not uniform"));
+  EXPECT_THAT(refused.err, HasSubstr("resample the record, or state sample_rate"));
+}
+
 }  // namespace
 }  // namespace modcal::convert_test

@@ -152,12 +152,32 @@ def functions(folder):
             assert any(abs(found[0] / f - 1) < 1e-6 and abs(found[1] / z - 1) < 1e-5 for found in tables[name]), (name, tables)
 
 
+def converted(folder):
+    """The functions of h.npz, as they are written in turn from format to format."""
+    theirs = np.load(folder / "h.npz")
+    lines, two = theirs["frequency"], theirs["H"]
+    last = folder / "h.npz"
+    for name in ("conv.uff", "conv.h5", "conv.csv", "conv.mat", "conv.npz"):
+        done = modcal("convert", last, folder / name)
+        assert done.returncode == 0 and not done.stderr, (name, done.stderr)
+        last = folder / name
+    read = {"npz": np.load(folder / "conv.npz"), "mat": scipy.io.loadmat(folder / "conv.mat"), "h5": h5py.File(folder / "conv.h5")}
+    for kind, file in read.items():
+        assert np.array_equal(np.ravel(file["f"]), lines), kind
+        for j in (0, 1):
+            assert np.array_equal(np.ravel(file[f"H_{j + 1}"]), two[:, j]), kind
+    assert read["npz"]["H_1.unit"] == "g/lbf" and read["h5"]["H_1"].attrs["unit"] == "g/lbf"
+    rows = np.loadtxt(folder / "conv.csv", delimiter=",", skiprows=1)
+    assert np.array_equal(rows[:, 0], lines) and np.array_equal(rows[:, 3] + 1j * rows[:, 4], two[:, 1])
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         theirs(Path(name))
         ours(Path(name))
         units(Path(name))
         functions(Path(name))
+        converted(Path(name))
 
 
 if __name__ == "__main__":

@@ -125,7 +125,7 @@ TEST_F(Universal, ReadsEveryKindOfValuesToTheLastDigit) {
     EXPECT_THAT(headers.other_datasets, ElementsAre(151));
     const UniversalFunction& function = headers.functions[0];
     EXPECT_EQ(function.name, "Kräft");
-    EXPECT_EQ(function.response_node, 7);
+    EXPECT_EQ(function.places.response_node, 7);
     EXPECT_EQ(function.ordinate.unit, "g");
     EXPECT_EQ(function.abscissa.unit, "s");
     const UniversalValues read = read_universal_values(file, function);

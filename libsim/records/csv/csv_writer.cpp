@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "libsim/base/error.hpp"
+#include "libsim/records/csv/csv_table.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/signal_file.hpp"
@@ -32,34 +33,6 @@ void append_comment(fmt::memory_buffer& out, const std::string& text) {
   }
 }
 
-// Headings first: numpy.genfromtxt(names=True) takes the first line for them.
-void append_preamble(fmt::memory_buffer& out, std::span<const Signal> signals,
-                     const CsvWriteOptions& options) {
-  std::string_view separator;
-  if (options.time_column) {
-    out.append(std::string_view("t [s]"));
-    separator = ",";
-  }
-  for (const Signal& signal : signals) {
-    out.append(separator);
-    out.append(escaped(heading_text(signal.quantity, signal.unit)));
-    separator = ",";
-  }
-  out.push_back('\n');
-  append_comment(out, fmt::format("sample_rate: {} Hz", signals.front().sample_rate));
-  for (const std::string& line : options.provenance) append_comment(out, line);
-}
-
-void append_row(fmt::memory_buffer& out, std::span<const Signal> signals, std::size_t i,
-                bool time_column) {
-  const auto end = std::back_inserter(out);
-  if (time_column) {
-    fmt::format_to(end, "{},", static_cast<double>(i) / signals.front().sample_rate);
-  }
-  for (const Signal& signal : signals) fmt::format_to(end, "{},", signal.samples[i]);
-  out[out.size() - 1] = '\n';
-}
-
 void require_plain_headings(std::span<const Signal> signals, const std::string& file) {
   for (const Signal& signal : signals) {
     const ColumnHeading read = parse_heading(heading_text(signal.quantity, signal.unit));
@@ -71,13 +44,24 @@ void require_plain_headings(std::span<const Signal> signals, const std::string& 
   }
 }
 
+// Headings first: numpy.genfromtxt(names=True) takes the first line for them.
+void append_preamble(fmt::memory_buffer& out, std::span<const std::string> headings,
+                     std::span<const std::string> comments) {
+  std::string_view separator;
+  for (const std::string& heading : headings) {
+    out.append(std::exchange(separator, ","));
+    out.append(escaped(heading));
+  }
+  out.push_back('\n');
+  for (const std::string& line : comments) append_comment(out, line);
+}
+
 }  // namespace
 
-void write_csv(const std::filesystem::path& path, std::span<const Signal> signals,
-               const CsvWriteOptions& options) {
+void write_csv_table(const std::filesystem::path& path, std::span<const std::string> headings,
+                     std::span<const std::string> comments, std::size_t rows,
+                     const std::function<void(std::size_t, std::vector<double>&)>& append_row) {
   const std::string name = path.string();
-  require_one_record(signals, name);
-  require_plain_headings(signals, name);
   replace_file(path, [&](const std::filesystem::path& temporary) {
     errno = 0;
     std::ofstream file(temporary, std::ios::binary);
@@ -85,10 +69,14 @@ void write_csv(const std::filesystem::path& path, std::span<const Signal> signal
                    "{}: cannot be written: {}; check the folder and its permissions", name,
                    std::strerror(errno));
     fmt::memory_buffer out;
-    append_preamble(out, signals, options);
-    for (std::size_t i = 0; i < signals.front().size(); ++i) {
-      append_row(out, signals, i, options.time_column);
-      if (out.size() < kBlock && i + 1 < signals.front().size()) continue;
+    append_preamble(out, headings, comments);
+    std::vector<double> row;
+    for (std::size_t i = 0; i < rows; ++i) {
+      row.clear();
+      append_row(i, row);
+      for (const double value : row) fmt::format_to(std::back_inserter(out), "{},", value);
+      out[out.size() - 1] = '\n';
+      if (out.size() < kBlock && i + 1 < rows) continue;
       file.write(out.data(), static_cast<std::streamsize>(out.size()));
       out.clear();
     }
@@ -96,6 +84,26 @@ void write_csv(const std::filesystem::path& path, std::span<const Signal> signal
     MODCAL_REQUIRE(!file.fail(), "{}: writing failed: {}; is the disk full?", name,
                    std::strerror(errno));
   });
+}
+
+void write_csv(const std::filesystem::path& path, std::span<const Signal> signals,
+               const CsvWriteOptions& options) {
+  const std::string name = path.string();
+  require_one_record(signals, name);
+  require_plain_headings(signals, name);
+  const double rate = signals.front().sample_rate;
+  std::vector<std::string> headings;
+  if (options.time_column) headings.emplace_back("t [s]");
+  for (const Signal& signal : signals) {
+    headings.push_back(heading_text(signal.quantity, signal.unit));
+  }
+  std::vector<std::string> comments = {fmt::format("sample_rate: {} Hz", rate)};
+  comments.insert(comments.end(), options.provenance.begin(), options.provenance.end());
+  write_csv_table(path, headings, comments, signals.front().size(),
+                  [&](std::size_t i, std::vector<double>& row) {
+                    if (options.time_column) row.push_back(static_cast<double>(i) / rate);
+                    for (const Signal& signal : signals) row.push_back(signal.samples[i]);
+                  });
 }
 
 }  // namespace modcal
