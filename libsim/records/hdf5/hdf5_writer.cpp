@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fstream>
 #include <set>
 
 #include "libsim/base/error.hpp"
@@ -10,10 +11,11 @@
 namespace modcal {
 namespace {
 
+// In memory: the library crashes at the program's end where its file could not be closed, as on a
+// full disk.
 class Hdf5Writer {
  public:
-  Hdf5Writer(const std::filesystem::path& path, const std::string& name)
-      : name_(name), file_(created(path), H5Fclose) {}
+  explicit Hdf5Writer(const std::string& name) : name_(name), file_(created(name), H5Fclose) {}
 
   void add_text(hid_t object, const char* attribute, const std::string& text) const {
     const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -54,42 +56,58 @@ class Hdf5Writer {
     return dataset;
   }
   hid_t root() const { return file_.get(); }
-  void finish() const { good(H5Fflush(file_.get(), H5F_SCOPE_LOCAL)); }
+  std::vector<char> content() const {
+    good(H5Fflush(file_.get(), H5F_SCOPE_LOCAL));
+    std::vector<char> image(
+        static_cast<std::size_t>(std::max<ssize_t>(0, H5Fget_file_image(file_.get(), nullptr, 0))));
+    good(H5Fget_file_image(file_.get(), image.data(), image.size()) > 0 ? 0 : -1);
+    return image;
+  }
 
  private:
   void good(herr_t done) const {
     MODCAL_REQUIRE(done >= 0, "{}: writing failed; is the disk full?", name_);
   }
-  static hid_t created(const std::filesystem::path& path) {
+  static hid_t created(const std::string& name) {
+    constexpr std::size_t kGrowsBy = 1 << 20;
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Id how(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_link_creation_order(how.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, how.get(), H5P_DEFAULT);
+    const Hdf5Id where(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fapl_core(where.get(), kGrowsBy, 0);
+    return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, how.get(), where.get());
   }
   const std::string& name_;
   Hdf5Id file_;
   std::set<std::string> links_;
 };
 
+std::vector<char> content_of(const WrittenArrays& arrays, const std::string& name) {
+  const std::lock_guard lock(hdf5_lock());
+  Hdf5Writer writer(name);
+  MODCAL_REQUIRE(writer.root() >= 0, "{}: cannot be written; check the folder", name);
+  if (arrays.has_lines()) {
+    const Hdf5Id lines = writer.add_dataset(arrays.axis, H5T_NATIVE_DOUBLE,
+                                            arrays.axis_values.size(), arrays.axis_values.data());
+    writer.add_text(lines.get(), "unit", "Hz");
+  } else {
+    writer.add_attribute(writer.root(), arrays.axis.c_str(), H5T_NATIVE_DOUBLE,
+                         arrays.axis_values.data());
+  }
+  writer.add_text(writer.root(), "provenance", arrays.provenance);
+  for (const WrittenArray& array : arrays.arrays) writer.add_array(array, arrays);
+  return writer.content();
+}
+
 }  // namespace
 
 void write_hdf5(const std::filesystem::path& path, const WrittenArrays& arrays) {
-  const std::string name = path.string();
+  const std::vector<char> content = content_of(arrays, path.string());
   replace_file(path, [&](const std::filesystem::path& temporary) {
-    const std::lock_guard lock(hdf5_lock());
-    Hdf5Writer writer(temporary, name);
-    MODCAL_REQUIRE(writer.root() >= 0, "{}: cannot be written; check the folder", name);
-    if (arrays.has_lines()) {
-      const Hdf5Id lines = writer.add_dataset(arrays.axis, H5T_NATIVE_DOUBLE,
-                                              arrays.axis_values.size(), arrays.axis_values.data());
-      writer.add_text(lines.get(), "unit", "Hz");
-    } else {
-      writer.add_attribute(writer.root(), arrays.axis.c_str(), H5T_NATIVE_DOUBLE,
-                           arrays.axis_values.data());
-    }
-    writer.add_text(writer.root(), "provenance", arrays.provenance);
-    for (const WrittenArray& array : arrays.arrays) writer.add_array(array, arrays);
-    writer.finish();
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(content.data(), std::ssize(content));
+    file.close();
+    MODCAL_REQUIRE(!file.fail(), "{}: writing failed; is the disk full?", path.string());
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/records/matlab/matlab_file.hpp"
+#include "libsim/records/matlab/matlab_layout.hpp"
 #include "libsim/records/signal_file.hpp"
 
 namespace modcal {
@@ -99,6 +100,20 @@ void write_all(mat_t* file, const WrittenArrays& arrays) {
   MODCAL_REQUIRE(good, "writing failed");
 }
 
+// libmatio says nothing of numbers that found no room. What is written last is looked for.
+bool is_written(const std::filesystem::path& path) {
+  try {
+    require_whole_matlab_file(path);
+  } catch (const InvalidInput&) {
+    return false;
+  }
+  mat_t* const file = Mat_Open(path.c_str(), MAT_ACC_RDONLY);
+  if (file == nullptr) return false;
+  const Variable last(Mat_VarReadInfo(file, kMatlabHeads), &Mat_VarFree);
+  Mat_Close(file);
+  return last != nullptr;
+}
+
 }  // namespace
 
 void write_matlab(const std::filesystem::path& path, const WrittenArrays& arrays) {
@@ -114,7 +129,8 @@ void write_matlab(const std::filesystem::path& path, const WrittenArrays& arrays
       failure = error.what();
     }
     const bool closed = Mat_Close(file) == 0;
-    MODCAL_REQUIRE(failure.empty() && closed, "{}: writing failed; is the disk full?", name);
+    MODCAL_REQUIRE(failure.empty() && closed && is_written(temporary),
+                   "{}: writing failed; is the disk full?", name);
   });
 }
 

@@ -57,6 +57,30 @@ TEST_F(Convert, AKilledConversionLeavesNothingBehindTheNext) {
   EXPECT_TRUE(std::filesystem::exists(path("other.csv.0badcafe.part")));
 }
 
+// A block is 1 kB here; the record takes at least 16 in every format.
+TEST_F(Convert, AFullDiskLeavesNoFile) {
+  shell(
+      "awk 'BEGIN {print \"# sample_rate: 1000 Hz\\nR1 [N],R2 [N]\"; for (i = 0; i < 4000; ++i) "
+      "print i % 7 + 1 / 3 \",\" i % 11}' > whole.csv");
+  for (const char* format : {"csv", "wav", "uff", "npy", "npz", "h5", "lvm", "mat"}) {
+    for (const int blocks : {1, 8, 31}) {
+      const Outcome outcome = shell(fmt::format("trap '' XFSZ; ulimit -f {}; '" MODCAL_PROGRAM
+                                                "' convert whole.csv full.{}",
+                                                blocks, format));
+      const bool is_there = std::filesystem::exists(folder() / (std::string("full.") + format));
+      EXPECT_EQ(outcome.code, is_there ? 0 : 3) << format << ' ' << blocks << outcome.err;
+      // What is said to be written is all of it.
+      if (is_there) {
+        EXPECT_EQ(modcal(std::string("inspect full.") + format).code, 0) << format;
+        EXPECT_THAT(modcal(std::string("inspect full.") + format).out, HasSubstr("4000 samples"));
+      } else {
+        EXPECT_THAT(outcome.err, HasSubstr(std::string("full.") + format)) << outcome.err;
+      }
+      std::filesystem::remove(folder() / (std::string("full.") + format));
+    }
+  }
+}
+
 TEST_F(Convert, HeadersAloneTellChannelsAndRate) {
   ASSERT_EQ(modcal("convert a.csv b.uff").code, 0);
   const Outcome inspected = modcal("inspect b.uff --headers");
