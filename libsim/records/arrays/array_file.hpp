@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -51,11 +53,20 @@ class ArrayFile {
   virtual std::vector<double> column(const NamedArray& array, std::size_t j) = 0;
   /// Of an array of texts the first one.
   virtual std::string text(const NamedArray& array) = 0;
-  /// Its one real value.
-  double number(const NamedArray& array) { return column(array, 0)[0]; }
+  /// Its one real value, read once: a rate is that of every channel.
+  double number(const NamedArray& array) {
+    const std::lock_guard lock(mutex_);
+    const auto known = numbers_.find(array.place);
+    if (known != numbers_.end()) return known->second;
+    return numbers_[array.place] = column(array, 0)[0];
+  }
 
  protected:
   std::vector<NamedArray> arrays_;
+
+ private:
+  std::mutex mutex_;
+  std::map<std::size_t, double> numbers_;  // by place
 };
 
 /// The vectors and the columns of tables as channels. The sample rate [Hz] is a number called

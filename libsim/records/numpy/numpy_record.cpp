@@ -1,6 +1,7 @@
 #include <zip.h>
 
 #include <fstream>
+#include <mutex>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
@@ -35,7 +36,8 @@ NpyBytes bytes_of_file(const Path& path) {
       };
 }
 
-// An archive that is open as long as one of its members is read.
+// An archive that is open as long as a channel may be asked for: opening it reads the entries of
+// all. One thread at a time reads of it.
 class Archive {
  public:
   explicit Archive(const Path& path) {
@@ -55,21 +57,43 @@ class Archive {
   Archive(const Archive&) = delete;
   Archive& operator=(const Archive&) = delete;
   zip_t* zip() const { return zip_; }
+  std::mutex& lock() { return lock_; }
 
  private:
+  std::mutex lock_;
   zip_t* zip_ = nullptr;
 };
 
-using Member = std::unique_ptr<zip_file_t, decltype(&zip_fclose)>;
+// One of its files, open.
+class Member {
+ public:
+  Member(std::shared_ptr<Archive> archive, std::uint64_t index, const std::string& place)
+      : archive_(std::move(archive)) {
+    const std::lock_guard lock(archive_->lock());
+    file_ = zip_fopen_index(archive_->zip(), index, 0);
+    MODCAL_REQUIRE(file_ != nullptr, "{}: cannot be read: {}", place,
+                   zip_strerror(archive_->zip()));
+  }
+  ~Member() {
+    const std::lock_guard lock(archive_->lock());
+    zip_fclose(file_);
+  }
+  Member(const Member&) = delete;
+  Member& operator=(const Member&) = delete;
+  zip_file_t* file() const { return file_; }
+  std::mutex& lock() const { return archive_->lock(); }
 
-NpyBytes bytes_of_member(const Path& path, std::uint64_t index, std::uint64_t all,
-                         const std::string& place) {
-  const auto archive = std::make_shared<Archive>(path);
-  zip_file_t* const opened = zip_fopen_index(archive->zip(), index, 0);
-  MODCAL_REQUIRE(opened != nullptr, "{}: cannot be read: {}", place, zip_strerror(archive->zip()));
-  return [archive, member = std::make_shared<Member>(opened, &zip_fclose), place, all,
+ private:
+  std::shared_ptr<Archive> archive_;
+  zip_file_t* file_ = nullptr;
+};
+
+NpyBytes bytes_of_member(const std::shared_ptr<Archive>& archive, std::uint64_t index,
+                         std::uint64_t all, const std::string& place) {
+  return [member = std::make_shared<Member>(archive, index, place), place, all,
           at = std::uint64_t{0}](char* bytes, std::size_t size) mutable {
-    zip_file_t* const file = member->get();
+    const std::lock_guard lock(member->lock());
+    zip_file_t* const file = member->file();
     const zip_int64_t read = zip_fread(file, bytes, size);
     if (read > 0) at += static_cast<std::uint64_t>(read);
     MODCAL_REQUIRE(read >= 0, "{}: byte {}: {}: the file is damaged", place, at,
@@ -105,16 +129,17 @@ std::shared_ptr<NpyArrays> array_of(const Path& path) {
 std::shared_ptr<NpyArrays> arrays_of(const Path& path) {
   size_of(path);
   auto arrays = std::make_shared<NpyArrays>();
-  const Archive archive(path);
-  const zip_int64_t count = zip_get_num_entries(archive.zip(), 0);
+  const auto archive = std::make_shared<Archive>(path);
+  const zip_int64_t count = zip_get_num_entries(archive->zip(), 0);
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(std::max<zip_int64_t>(0, count)); ++i) {
     zip_stat_t stat;
-    const bool known = zip_stat_index(archive.zip(), i, 0, &stat) == 0 &&
+    const bool known = zip_stat_index(archive->zip(), i, 0, &stat) == 0 &&
                        (stat.valid & ZIP_STAT_NAME) != 0 && (stat.valid & ZIP_STAT_SIZE) != 0;
     if (!known || !std::string_view(stat.name).ends_with(".npy")) continue;
     const std::string place = fmt::format("{}: {}", path.string(), utf8_or_latin1(stat.name));
-    arrays->add(names_of(stat.name), place, stat.size,
-                [path, i, all = stat.size, place] { return bytes_of_member(path, i, all, place); });
+    arrays->add(names_of(stat.name), place, stat.size, [archive, i, all = stat.size, place] {
+      return bytes_of_member(archive, i, all, place);
+    });
   }
   MODCAL_REQUIRE(!arrays->arrays().empty(), "{}: no array of NumPy stands in this archive",
                  path.string());
