@@ -81,6 +81,18 @@ TEST_F(CalibrateRecords, FailByThePriorsWhereTheFitIsNotWrong) {
   EXPECT_THAT(result.summary, testing::Not(testing::HasSubstr("FIT IS WRONG")));
 }
 
+// The start is 2 mm off and may move by 1: what is found on the bound is not the string's.
+TEST_F(CalibrateRecords, FailWhereTheStringLiesBeyondTheBounds) {
+  CalibrateOptions options = simulated(0.3, 51200.0);
+  options.inversion.model_error.contact = 2e-3;
+  options.calibration.parameters.ranges.contact = 1e-3;
+  const StudyResult result = options.run(context());
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.summary, testing::HasSubstr("x_c ended on the bound of its range"));
+  options.calibration.parameters.ranges.contact = 3e-3;
+  EXPECT_EQ(options.run(context()).status, report::Status::kOk);
+}
+
 // Reactions of the paper's string, 60 modes each stepped exactly for a force that is linear between
 // the samples of a grid eight times as fine; lines of the force, k^(-3/2), whose phases wander.
 std::vector<Signal> lines_of_force(double duration, double sample_rate) {
