@@ -96,13 +96,39 @@ void Recording::check_finite(std::string_view file) {
   }
 }
 
+namespace {
+
+// Its size and when it was written to; of what is no file any more nothing.
+std::pair<std::uintmax_t, std::filesystem::file_time_type> state_of(
+    const std::filesystem::path& path) {
+  std::error_code ignored;
+  return {std::filesystem::file_size(path, ignored),
+          std::filesystem::last_write_time(path, ignored)};
+}
+
+}  // namespace
+
 Recording read_record(const std::filesystem::path& path, const std::string& format,
                       const ReadOptions& options) {
   const std::string name = path.filename().string();
   if (const auto recording = find_given(name)) return read_given(*recording, name, options);
   require_regular_file(path);  // before its name is asked for a format
   if (!options.headers_only) require_memory(path, format, options.memory);
-  return record_format(path, format).read(path, options);
+  const auto before = state_of(path);
+  Recording recording = record_format(path, format).read(path, options);
+  if (state_of(path) != before) {
+    recording.add_problem(
+        fmt::format("{}: the file was written to while it was read; try again when it is whole",
+                    path.string()));
+  }
+  if (std::isfinite(recording.sample_rate) && !(recording.sample_rate > 0.0)) {
+    recording.add_problem(
+        fmt::format("{}: the file tells a sample rate of {:g} Hz ({}); state "
+                    "sample_rate",
+                    path.string(), recording.sample_rate, recording.rate_source));
+  }
+  if (!options.survey) recording.refuse_problems();
+  return recording;
 }
 
 }  // namespace modcal

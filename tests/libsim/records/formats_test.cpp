@@ -3,6 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
@@ -124,6 +129,29 @@ TEST_P(Formats, DamagedFilesAreReadOrRefused) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Formats, testing::Values("npy", "npz", "hdf5", "lvm", "uff"),
                          [](const auto& test) { return std::string(test.param); });
+
+struct AnyFile : FolderTest {};
+
+// Rows are added every tenth of a millisecond to a file that takes tens of them to read.
+TEST_F(AnyFile, ThatIsWrittenToWhileItIsReadIsRefused) {
+  std::string rows = "# sample_rate: 1000 Hz\nR1 [N],R2 [N]\n";
+  for (int i = 0; i < 200'000; ++i) rows += "1,2\n";
+  write("r.csv", rows);
+  std::atomic<bool> is_read = false, is_begun = false;
+  std::thread writer([&] {
+    std::ofstream file(path("r.csv"), std::ios::app);
+    for (int i = 0; i < 100'000 && !is_read; ++i) {
+      file << "1,2\n" << std::flush;
+      is_begun = true;
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  });
+  while (!is_begun) std::this_thread::yield();
+  const std::string said = refusal_of([&] { read_record(path("r.csv"), "csv"); });
+  is_read = true;
+  writer.join();
+  EXPECT_THAT(said, HasSubstr("r.csv: the file was written to while it was read"));
+}
 
 }  // namespace
 }  // namespace modcal::formats_test

@@ -310,6 +310,16 @@ TEST_F(Matlab, ADamagedCompressedVariableIsRefused) {
   EXPECT_EQ(refused, 200u);
 }
 
+TEST_F(Matlab, ARateThatIsNotPositiveIsRefused) {
+  {
+    MatWriter out(file(), MAT_FT_MAT5);
+    out.write(MatWriter::doubles("force", 1, {1.0, 2.0, 3.0}));
+    out.write(MatWriter::doubles("fs", 1, {0.0}));
+  }
+  EXPECT_THAT(refusal(), HasSubstr("the file tells a sample rate of 0 Hz (fs = 0)"));
+  EXPECT_EQ(read({.survey = true}).problem_count, 1u);
+}
+
 TEST_F(Matlab, OtherFilesAreRefused) {
   std::ofstream(file()) << "t,f\n1,2\n";
   EXPECT_THAT(refusal(), HasSubstr("cannot be read as a MAT file"));
