@@ -126,6 +126,16 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
   outcomes_.emplace(stored_outcomes(*list_, *finished_, folder_));
 }
 
+void StoredRun::require_some_done() const {
+  for (std::size_t task = 0; task < tasks(); ++task) {
+    if (outcomes_->has(task)) return;
+  }
+  throw_invalid_input(
+      "{}: none of the {} tasks is done, by this program and with its files as they are now; run:\n"
+      "  {}",
+      out_.string(), tasks(), command_);
+}
+
 nlohmann::ordered_json seeds_json(const LoadedExperiment& loaded) {
   nlohmann::ordered_json seeds = nlohmann::ordered_json::object();
   Choice<Experiment> choice = loaded.choice;

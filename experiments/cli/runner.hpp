@@ -93,6 +93,8 @@ class StoredRun {
   /// What was finished when the folder was read, by task.
   const TaskOutcomes& outcomes() const { return *outcomes_; }
   std::size_t tasks() const { return outcomes_->size(); }
+  /// Throws InvalidInput where no task is finished.
+  void require_some_done() const;
   const std::vector<JournalDamage>& damages() const { return finished_->damages(); }
 
  private:

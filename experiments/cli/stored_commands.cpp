@@ -12,6 +12,9 @@
 namespace modcal {
 namespace {
 
+constexpr std::string_view kNotFinished =
+    "by this program and with the files as they are now it is not finished: no result shown is its";
+
 struct FolderArguments {
   std::string folder;
   std::string other;
@@ -102,20 +105,10 @@ std::size_t add_rows(const StoredRun& run, ResultsDatabase& database) {
   return done;
 }
 
-void require_some_done(const StoredRun& run) {
-  for (std::size_t task = 0; task < run.tasks(); ++task) {
-    if (run.outcomes().has(task)) return;
-  }
-  throw_invalid_input(
-      "{}: none of the {} tasks is done, by this program and with its files as they are now; run:\n"
-      "  {}",
-      run.out().string(), run.tasks(), run.command());
-}
-
 ExitCode merge(const FolderArguments& arguments) {
   const StoredRun run(arguments.folder);
   print_damages(run);
-  require_some_done(run);
+  run.require_some_done();
   OutputDirectory out(run.out());
   const std::filesystem::path file = run.out() / kDatabaseFile;
   MODCAL_REQUIRE(out.foreign_among({kDatabaseFile}).empty(),
@@ -145,17 +138,11 @@ StudyContext context_of(const StoredRun& run, SharedWork& work, std::string comm
 }
 
 ExitCode replay_task(const FolderArguments& arguments) {
-  const std::string& out = arguments.folder;
-  const std::size_t task = arguments.task;
+  const auto& [out, other, number, task] = arguments;
   const StoredRun run(out);
   MODCAL_REQUIRE(task < run.tasks(), "task {} does not exist: {} has the tasks 0 to {}", task, out,
                  run.tasks() - 1);
-  if (!run.outcomes().has(task)) {
-    warn(
-        "task {} is not among those that {} has finished, by this program and with its files as "
-        "they are now: what follows is none of its results",
-        task, out);
-  }
+  if (!run.outcomes().has(task)) warn("task {} of {}: {}", task, out, kNotFinished);
   auto cell = nlohmann::ordered_json::object();
   for (std::size_t axis = 0; axis < run.list().axes().size(); ++axis) {
     remark("{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
@@ -291,7 +278,7 @@ ExitCode report_stored_run(const std::string& out) {
   const StoredRun run(out);
   print_damages(run);
   SharedWork work;
-  require_some_done(run);
+  run.require_some_done();
   const StudyResult result =
       run.list().sum_up(run.outcomes(), context_of(run, work, run.command()));
   return present(run.loaded(), result, settings_of(run, out), 0.0);

@@ -252,6 +252,10 @@ std::string unknown_values(const ContinuationResult& found);
 /// several of them; else empty.
 std::string contradiction(const CalibrationResult& result);
 
+/// The f0 or x_c that lies beyond the bound of its range, with the remedy: more than three
+/// deviations from its start, which tell it better than the bounds; empty: none does.
+std::string held_back(const CalibrationResult& result);
+
 /// What is in the record beside what was stated: sensors, damping, causes of misfit; or which of
 /// these were looked for; empty where none was. Of a search with an estimate.
 std::string cause_lines(const CalibrationResult& result);

@@ -247,4 +247,19 @@ std::string contradiction(const CalibrationResult& result) {
   return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
+std::string held_back(const CalibrationResult& result) {
+  for (const CalibratedParameter& one : result.parameters) {
+    const auto name = parse_parameter(one.name);
+    const double far = std::abs(one.final - one.initial) / one.deviation;
+    if (!name || !one.at_bound || !(far > 3.0)) continue;
+    if (name->kind != ParameterKind::kContact && name->kind != ParameterKind::kFundamental)
+      continue;
+    return fmt::format(
+        "{} ended on the bound of its range, {:.6g} {}, {:.3g} deviations from its start: the "
+        "string lies beyond; state it nearer to where it is, or a wider {}",
+        one.name, one.final, one.unit, far, type_of(*name).range_option.key);
+  }
+  return {};
+}
+
 }  // namespace modcal

@@ -214,18 +214,6 @@ void reject_calibration(const std::string& reason, StudyResult& result) {
   result.status = report::Status::kFailed;
 }
 
-namespace {
-
-// Of a string that lies farther away than may be gone nothing is right. A start that the data tell
-// no better than the bounds do is as good as another one.
-bool is_held_back(const CalibratedParameter& parameter) {
-  const bool is_of_string = parameter.name == "f0" || parameter.name.starts_with("x_c");
-  return is_of_string && parameter.at_bound &&
-         std::abs(parameter.final - parameter.initial) > 3.0 * parameter.deviation;
-}
-
-}  // namespace
-
 void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result) {
   std::vector<std::string> bound;
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
@@ -243,16 +231,7 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
   const auto fail = [&result](const std::string& text) { reject_calibration(text, result); };
   if (const auto& found = outcome.result.continuation) {
     if (!found->right) fail(contradiction(outcome.result));
-    for (const CalibratedParameter& parameter : outcome.result.parameters) {
-      if (!is_held_back(parameter)) continue;
-      fail(fmt::format(
-          "{0} ended on the bound of its range, {1:.6g} {2}, {3:.3g} deviations from its start: "
-          "the string lies beyond; state {4} nearer to it, or a wider {5}",
-          parameter.name, parameter.final, parameter.unit,
-          std::abs(parameter.final - parameter.initial) / parameter.deviation,
-          parameter.name == "f0" ? "string.fundamental" : "bow.position",
-          parameter.name == "f0" ? "frequency_range" : "contact_range"));
-    }
+    if (const std::string held = held_back(outcome.result); !held.empty()) fail(held);
     if (const auto unknown = unknown_values(*found); !unknown.empty()) {
       fail(fmt::format(
           "what the record tells of {} is not known: record for longer, or with less noise",

@@ -203,7 +203,8 @@ TEST_F(OldFolder, WithoutAFinishedTaskIsNotMerged) {
     EXPECT_THAT(outcome.err, HasSubstr("tasks is done, by this program and with its files"));
   }
   EXPECT_EQ(content_of(path("a/results.sqlite")), database);
-  EXPECT_THAT(modcal("replay a 0").err, HasSubstr("task 0 is not among those that a has finished"));
+  EXPECT_THAT(modcal("replay a 0").err,
+              HasSubstr("task 0 of a: by this program and with the files"));
 }
 
 }  // namespace
