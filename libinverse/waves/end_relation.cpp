@@ -64,6 +64,10 @@ bool EndRelationFit::noise_alone(std::size_t end) const {
 
 bool EndRelationFit::explained() const { return !at_edge && unexplained < kUnexplained; }
 
+bool EndRelationFit::tells_fundamental() const {
+  return misfit_as_stated - least_misfit > kFundamentalTold;
+}
+
 EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& string) {
   require_record(record, string);
   EndBins bins = bins_of(EndSpectra(record), string.fundamental, kRelationTop);
@@ -77,10 +81,18 @@ EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& st
   fit.misfit.back() = copy_misfit(bins, fit.copy_gain);
   // The relations are compared on one grid; the string alone is found more closely.
   bins.error = kRefinedError;
-  for (int round = 0; round < kRefinements; ++round) {
-    grid = grid.halved();
-    least_misfit(bins, grid, found);
-  }
+  const StringGrid held{.contact = grid.contact};
+  const auto refined = [&bins](StringGrid steps, StatedString& from) {
+    double misfit = least_misfit(bins, steps, from);
+    for (int round = 0; round < kRefinements; ++round) {
+      steps = steps.halved();
+      misfit = least_misfit(bins, steps, from);
+    }
+    return misfit;
+  };
+  StatedString stated = string;
+  fit.misfit_as_stated = refined(held, stated);
+  fit.least_misfit = refined(grid.halved(), found);
   fit.fundamental = found.fundamental;
   fit.contact = found.contact;
   const double shift = std::abs(found.fundamental / string.fundamental - 1.0);

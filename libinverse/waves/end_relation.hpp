@@ -44,6 +44,10 @@ struct EndRelationFit {
   double copy_gain = 0.0;    ///< g of R₂ = g R₁
   double fundamental = 0.0;  ///< f₀ of the string [Hz]
   double contact = 0.0;      ///< x_c of the string [m]
+  /// Of that string by the closer grid, and of one with the f₀ stated.
+  double least_misfit = 0.0, misfit_as_stated = 0.0;
+  /// Whether the f₀ found serves better than that stated; in few periods many do as well.
+  bool tells_fundamental() const;
   bool at_edge = false;      ///< f₀ is farther from the one stated than it may be
   double unexplained = 0.0;  ///< share of the reactions' power below 10 f₀ that the string leaves
   bool explained() const;    ///< it is that of one string

@@ -128,6 +128,13 @@ constexpr double kToldMisfit = 1.55;
 constexpr double kContactTold = 0.3;
 constexpr double kSameContact = 0.015;
 
+/// By how much less the misfit with another f0 must be than with the one stated for the ends to
+/// tell that this is wrong. Source: 15 strokes of .06 to .25 s, 1 % of noise: with the f0 stated
+/// right .00 to .02, in three of them .05 to .07, by an f0 .5 to .7 % off; stated .5 % wrong .08 to
+/// .61. Range tried: 0.04 to 0.16. Doubled: three of 15 that are stated wrong are inverted, with a
+/// warning. Halved: three of 15 that are stated right are refused.
+constexpr double kFundamentalTold = 0.08;
+
 /// Modes, in f₀, among which B is looked for first, and in how many steps to either side of that
 /// stated.
 /// Source: at 20 f₀ a B of 1e-3, that of the stiffest strings, moves a mode by a fifth.

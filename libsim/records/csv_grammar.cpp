@@ -203,7 +203,7 @@ ParsedNumber DecimalMark::parse(std::string_view text, char separator) {
   with_point[comma] = '.';
   const ParsedNumber found = parse_number(with_point);
   if (found.kind != NumberKind::kNumber) return number;
-  has_commas_ = true;
+  if (comma_.empty()) comma_ = text;
   // 1,234 may be a number of four digits; 0,123 and 1,23 are not.
   const std::size_t end = std::min(text.find_first_of("eE", comma), text.size());
   const std::size_t first = text.find_first_not_of("+-");
@@ -212,11 +212,10 @@ ParsedNumber DecimalMark::parse(std::string_view text, char separator) {
 }
 
 std::string DecimalMark::doubt() const {
-  if (!has_commas_) return {};
-  if (has_points_) {
-    return "numbers with decimal points and with decimal commas stand side by side; write points";
-  }
-  return is_told_ ? "" : "commas may mark decimals or thousands, as in 1,234; write decimal points";
+  if (comma_.empty() || (is_told_ && !has_points_)) return {};
+  return fmt::format("the comma of {} {}; write decimal points", comma_,
+                     has_points_ ? "would mark decimals, for which other numbers have points"
+                                 : "may mark decimals or thousands");
 }
 
 bool are_numbers(std::span<const std::string> fields, char separator) {

@@ -84,8 +84,9 @@ class DecimalMark {
   std::string doubt() const;
 
  private:
-  bool has_points_ = false, has_commas_ = false;
-  bool is_told_ = false;  ///< some comma cannot mark thousands
+  bool has_points_ = false;
+  bool is_told_ = false;    ///< some comma cannot mark thousands
+  std::string comma_ = {};  ///< the first number with one
 };
 
 /// Whether no field is a text.

@@ -60,6 +60,20 @@ TEST(EndRelation, OfAStringIsThatOfTheStringStated) {
   }
 }
 
+// Of f0 half a per cent off a stroke says so, and nothing of one that is right.
+TEST(EndRelation, TellsAnotherFundamentalWhereItServesBetter) {
+  const double level = kNoise * standard_deviation(good().r1);
+  StatedString string = kStated;
+  for (const double off : {-0.01, -0.005, 0.0, 0.005, 0.01}) {
+    string.fundamental = 294.0 * (1.0 + off);
+    const EndRelationFit fit =
+        fit_end_relations({good().r1, good().r2, good().rate, {level, level}}, string);
+    EXPECT_EQ(fit.tells_fundamental(), off != 0.0) << off;
+    // Both are searched for on grids of their own.
+    EXPECT_LT(fit.least_misfit, fit.misfit_as_stated + 0.01) << off;
+  }
+}
+
 TEST(EndRelation, TellsOfSignsAndExchangedEnds) {
   const std::vector<double>&left = good().r1, &right = good().r2;
   EXPECT_EQ(fitted(times(-1.0, left), right).best(), EndRelation::kSignTurned);

@@ -259,9 +259,10 @@ TEST_F(CsvReader, ReadsDecimalCommasWhereTheyDoNotSeparate) {
 
 TEST_F(CsvReader, RefusesCommasThatMayMarkThousands) {
   EXPECT_EQ(error("# sample_rate: 1 Hz\nR1;R2\n1,234;5\n2,345;6\n"),
-            "r.csv: commas may mark decimals or thousands, as in 1,234; write decimal points");
-  EXPECT_THAT(error("# sample_rate: 1 Hz\nR1;R2\n1,234;5.5\n2,345;6\n"),
-              HasSubstr("numbers with decimal points and with decimal commas stand side by side"));
+            "r.csv: the comma of 1,234 may mark decimals or thousands; write decimal points");
+  EXPECT_THAT(
+      error("# sample_rate: 1 Hz\nR1;R2\n1,234;5.5\n2,345;6\n"),
+      HasSubstr("the comma of 1,234 would mark decimals, for which other numbers have points"));
   EXPECT_THAT(error("# sample_rate: 1 Hz\nR1;R2\n1,234.5;5\n2,345;6\n"),
               HasSubstr("\"1,234.5\" is not a number"));
   EXPECT_THAT(error("0,5;1,5\n1,5;2,5\n"), HasSubstr("the first row holds numbers"));
