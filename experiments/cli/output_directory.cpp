@@ -116,7 +116,8 @@ void OutputDirectory::announce(const std::vector<std::string>& names) {
 
 void OutputDirectory::keep(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (earlier_ && earlier_->contains(name)) announced_.insert(name);
+    // Of a folder that does not say what is its run's, what stands there is.
+    if (earlier_ ? earlier_->contains(name) : stands(path_ / name)) announced_.insert(name);
   }
 }
 

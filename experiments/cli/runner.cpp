@@ -150,6 +150,7 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) 
   const std::filesystem::path folder = folder_of(loaded, settings);
   out.require_own(names_of_list(*list, folder));
   RunStore store(out.path(), Shard{}, program_identity());
+  const FolderLock working(out.path(), Shard{});
   begin_run(loaded, settings, out);
   SharedWork work;
   return with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
@@ -215,8 +216,8 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   const Stopwatch clock;
   std::vector<std::string> names;
   for (const LoadedExperiment& one : experiments) names.push_back(stem_of(one.document.file));
+  const FolderLock working(OutputDirectory(settings.out).path(), settings.shard);
   const OutputDirectory before = begin_together(names, settings);
-  const FolderLock working(before.path(), settings.shard);
   const auto limit = limit_threads(settings.threads);
   SharedWork work(interrupt_token());
   report::Report report;
@@ -239,6 +240,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     }
     add_answer(loaded, result);
     OutputDirectory folder = free_folder(settings.out / name, names_of(result));
+    const FolderLock own(folder.path(), settings.shard);
     apart = apart || folder.path() != settings.out / name;
     record_run(loaded, {.command = command, .folder = settings.folder}, folder);
     folder.announce(names_of(result));

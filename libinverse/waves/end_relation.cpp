@@ -83,7 +83,7 @@ EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& st
   bins.error = kRefinedError;
   const StringGrid held{.contact = grid.contact};
   const auto refined = [&bins](StringGrid steps, StatedString& from) {
-    double misfit = least_misfit(bins, steps, from);
+    double misfit = 0.0;
     for (int round = 0; round < kRefinements; ++round) {
       steps = steps.halved();
       misfit = least_misfit(bins, steps, from);
@@ -91,8 +91,9 @@ EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& st
     return misfit;
   };
   StatedString stated = string;
+  least_misfit(bins, held, stated);
   fit.misfit_as_stated = refined(held, stated);
-  fit.least_misfit = refined(grid.halved(), found);
+  fit.least_misfit = refined(grid, found);
   fit.fundamental = found.fundamental;
   fit.contact = found.contact;
   const double shift = std::abs(found.fundamental / string.fundamental - 1.0);

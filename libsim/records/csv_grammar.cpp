@@ -204,10 +204,11 @@ ParsedNumber DecimalMark::parse(std::string_view text, char separator) {
   const ParsedNumber found = parse_number(with_point);
   if (found.kind != NumberKind::kNumber) return number;
   if (comma_.empty()) comma_ = text;
-  // 1,234 may be a number of four digits; 0,123 and 1,23 are not.
+  // 1,234 may be a number of four digits; 0,123, 1,23, 1234,567 and 1,234e-3 are not.
   const std::size_t end = std::min(text.find_first_of("eE", comma), text.size());
   const std::size_t first = text.find_first_not_of("+-");
-  is_told_ |= end - comma != 4 || first == comma || text[first] == '0';
+  is_told_ |= end != text.size() || end - comma != 4 || comma - first > 3 || first == comma ||
+              text[first] == '0';
   return found;
 }
 

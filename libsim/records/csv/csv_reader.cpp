@@ -28,7 +28,7 @@ class CsvReader final : public CsvHandler {
                    "{}: no header; the first row must name the columns, such as t [s],R1 [N]",
                    file_.name());
     MODCAL_REQUIRE(rows_ > 0, "{}: there is a header but no row of samples", file_.name());
-    if (std::string text = mark_.doubt(); !text.empty()) {
+    if (std::string text = mark_.doubt(); !text.empty() && !options_.headers_only) {
       record_.add_problem(fmt::format("{}: {}", file_.name(), text));
     }
     settle_sample_rate();
@@ -93,7 +93,7 @@ void CsvReader::refuse_hidden_row(std::string_view text) {
   if (first == std::string_view::npos || separators + 1 != std::ssize(columns_)) return;
   const std::string_view second =
       text.substr(first + 1, text.find(file_.separator(), first + 1) - first - 1);
-  if (parse_number(second).kind != NumberKind::kNumber) return;
+  if (DecimalMark().parse(second, file_.separator()).kind != NumberKind::kNumber) return;
   record_.add_problem(
       fmt::format("{}:{}:1: \"#{}\" begins a row of samples, which is left out as a comment; write "
                   "its number, or crop the record before it",

@@ -72,7 +72,8 @@ void set(matvar_t& structure, const std::string& field, Variable value) {
 }
 
 void write_all(mat_t* file, const WrittenArrays& arrays) {
-  std::set<std::string> taken = {kMatlabHeads, "sample_rate", "t", "time", "fs", "dt"};
+  std::set<std::string> taken = {kMatlabHeads, "provenance", "sample_rate", "t",
+                                 "time",       "fs",         "dt"};
   std::vector<std::string> names;
   for (const WrittenArray& array : arrays.arrays) {
     names.push_back(variable_name(array.name, arrays, taken));

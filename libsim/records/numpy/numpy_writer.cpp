@@ -154,6 +154,10 @@ void write_npz(const Path& path, const WrittenArrays& arrays) {
   const std::string name = path.string();
   for (const WrittenArray& array : arrays.arrays) {
     require_plain_name(array.name, array.unit, name);
+    MODCAL_REQUIRE(array.name != "provenance",
+                   "{}: an array \"provenance\" of an NPZ file says where it is from; rename the "
+                   "channel, or write another format",
+                   name);
     MODCAL_REQUIRE(!arrays.is_for_axis(array.name),
                    "{}: an array \"{}\" of an NPZ file would be taken for the {}; rename the "
                    "channel, or write another format",

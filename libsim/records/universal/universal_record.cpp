@@ -90,17 +90,24 @@ EvenLines lines_of(const UniversalFunction& function) {
   const bool is_ours = read_lines_text(function.id_lines[4], stated);
   const bool agrees =
       std::abs(stated.spacing() / function.step - 1.0) <= 2 * function.step_resolution &&
-      std::abs(stated.begin() - function.first) <= 1e-5 * function.first;
+      std::abs(stated.begin() - function.first) <= 1e-5 * std::abs(function.first);
   return is_ours && agrees ? stated : printed_lines(function.first, function.step);
 }
 
 // SI where the factors of dataset 164 alone tell it; of a power its square, whose unit is not told.
 void set_function_unit(const UniversalFunction& function,
                        const std::optional<UniversalUnits>& units, StoredChannel& channel) {
+  if (channel.what == FrequencyFunction::kCoherence) {
+    // A share, whatever its header says of what it is of.
+    channel.head.unit.clear();
+    channel.head.kind.clear();
+    channel.head.full_scale = 1.0;
+    return;
+  }
   channel.per_unit = function.denominator.unit;
   if (channel.what == FrequencyFunction::kResponse) {
     channel.head.full_scale /= force_factor(function.denominator, units);
-  } else if (channel.what != FrequencyFunction::kCoherence) {
+  } else {
     channel.head.unit = function.ordinate.unit;
     channel.head.full_scale *= channel.head.full_scale;
   }

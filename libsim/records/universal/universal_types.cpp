@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "libsim/records/csv_grammar.hpp"
 
@@ -45,7 +46,8 @@ bool read_lines_text(std::string_view text, EvenLines& lines) {
                        .step = number_before(" m) ", text),
                        .times = number_before("/", text),
                        .per = number_before(" Hz", text)};
-  const bool is_good = read.per > 0.0 && read.times > 0.0 && read.step > 0.0 && read.first >= 0.0;
+  const bool is_good =
+      read.per > 0.0 && read.times > 0.0 && read.step > 0.0 && std::isfinite(read.first);
   if (!is_good || !text.empty()) return false;
   lines = read;
   return true;

@@ -257,6 +257,19 @@ TEST_F(CsvReader, ReadsDecimalCommasWhereTheyDoNotSeparate) {
             "commas, write decimal points");
 }
 
+TEST_F(CsvReader, KnowsCommasThatCannotMarkThousands) {
+  for (const char* number : {"10132,512", "1,234E-03", "0,123", "1,25", "-,125"}) {
+    const Recording found =
+        read("# sample_rate: 1 Hz\nR1;R2\n" + std::string(number) + ";5\n1;6\n");
+    std::string with_point(number);
+    std::ranges::replace(with_point, ',', '.');
+    EXPECT_EQ(found.channels[0].samples[0], std::stod(with_point)) << number;
+  }
+  // A row behind a mark of comments is one whatever marks its decimals.
+  EXPECT_THAT(error("# sample_rate: 1 Hz\nR1;R2\n0,25;1,5\n#DIV/0!;1,7\n0,27;1,8\n"),
+              HasSubstr("begins a row of samples"));
+}
+
 TEST_F(CsvReader, RefusesCommasThatMayMarkThousands) {
   EXPECT_EQ(error("# sample_rate: 1 Hz\nR1;R2\n1,234;5\n2,345;6\n"),
             "r.csv: the comma of 1,234 may mark decimals or thousands; write decimal points");

@@ -289,6 +289,32 @@ TEST_F(FunctionsIn, TextOfOtherPrograms) {
               HasSubstr("it was cut off"));
 }
 
+TEST_F(FunctionsIn, LinesBelowZeroKeepTheirDigits) {
+  const FileFunctions all = two_and_a_coherence({-1234567.25, -1234567.0, -1234566.75, -1234566.5});
+  FileFunctions written = all;
+  write_functions(path("a.uff"), "auto", written, "");
+  expect_same(read_functions(path("a.uff"), "auto"), all);
+}
+
+// Its header may say what it is of, and dataset 164 what that is in.
+TEST_F(FunctionsIn, ACoherenceIsAShareWhateverItsHeaderSays) {
+  const auto file =
+      write("a.uff",
+            "    -1\n   164\n         5                             2\n    1.0D+03             "
+            "       5.0D+02                  1.0\n  273.15\n    -1\n    -1\n    58\nc\nNONE\nNONE\n"
+            "NONE\nNONE\n    6         0    0         0 NONE               0   0 NONE              "
+            " 0   0\n         2         4         1  1.00000E+00  1.00000E+00  0.00000E+00\n"
+            "        18    0    0    0 Frequency            Hz                  \n"
+            "        12    0    0    0 Acceleration         NONE                \n"
+            "        13    0    0    0 Force                NONE                \n"
+            "         0    0    0    0 NONE                 NONE                \n"
+            "  9.00000E-01  9.00000E-01  9.00000E-01  9.00000E-01\n    -1\n");
+  const FileFunctions read = read_functions(file, "auto");
+  ASSERT_EQ(read.functions.size(), 1u);
+  EXPECT_EQ(read.functions[0].unit, "");
+  EXPECT_NEAR(read.functions[0].values[2].real(), 0.9, 1e-7);
+}
+
 TEST(EvenLinesOf, AreTheFewestDigits) {
   const auto even = even_lines(Lines{0.0, 0.1, 0.2, 0.3});
   ASSERT_TRUE(even);
