@@ -132,10 +132,10 @@ INSTANTIATE_TEST_SUITE_P(Every, Formats, testing::Values("npy", "npz", "hdf5", "
 
 struct AnyFile : FolderTest {};
 
-// Rows are added every tenth of a millisecond to a file that takes tens of them to read.
+// Rows are added every tenth of a millisecond to a file that takes a tenth of a second to read.
 TEST_F(AnyFile, ThatIsWrittenToWhileItIsReadIsRefused) {
   std::string rows = "# sample_rate: 1000 Hz\nR1 [N],R2 [N]\n";
-  for (int i = 0; i < 200'000; ++i) rows += "1,2\n";
+  for (int i = 0; i < 1'000'000; ++i) rows += "1,2\n";
   write("r.csv", rows);
   std::atomic<bool> is_read = false, is_begun = false;
   std::thread writer([&] {
