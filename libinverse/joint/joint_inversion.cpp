@@ -88,7 +88,10 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
       largest_transfer_ = std::max(largest_transfer_, std::abs(value));
     }
   }
-  if (basis.size() > 0) fundamental_ = basis.frequency(0);
+  if (basis.size() > 0) {
+    fundamental_ = basis.frequency(0);
+    highest_ = basis.frequency(basis.size() - 1);
+  }
   arrival_ = first_arrivals(basis, contact, model.sensors);
   weight_power_ = static_cast<double>(samples);
   if (model.sigma > 0.0) {
@@ -208,6 +211,25 @@ void JointInversion::take_out_decays(const Weights& weights, const JointMethod& 
     transient_.subtract(setting_of(weights, workspace),
                         {workspace.spectrum[0], workspace.spectrum[1]}, workspace.transient);
   }
+}
+
+double JointInversion::ringing_misfit(const ReactionPair& reactions, const SensorNoiseLevel& noise,
+                                      JointWorkspace& workspace) const {
+  if (model_.truncation != Truncation::kTransient) return std::numeric_limits<double>::quiet_NaN();
+  const auto top = static_cast<std::size_t>(highest_ / grid_.bin_width());
+  double sum = 0.0, sides = 0.0;
+  for (std::size_t r = 0; r < 2; ++r) {
+    if (reactions[r].empty()) continue;
+    ReactionPair alone;
+    alone[r] = reactions[r];
+    const Weights weights(require_record(alone, noise), noise);
+    JointResult result;
+    transform(alone, OffsetRule::kNone, workspace, result);
+    sum += transient_.ringing_misfit(setting_of(weights, workspace), r, workspace.spectrum[r],
+                                     std::min(top + 1, fft_.bins()), workspace.transient);
+    sides += 1.0;
+  }
+  return sum / sides;
 }
 
 void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLevel& noise,

@@ -155,6 +155,13 @@ class JointInversion {
   SensorNoiseLevel lowered_noise(const ReactionPair& reactions, SensorNoiseLevel noise,
                                  OffsetRule rule, JointWorkspace& workspace) const;
 
+  /// What free decays without a force leave of the reactions up to the highest mode, over the
+  /// noise: 1 where the string rings by itself (TransientFit). Each end has amplitudes of its own:
+  /// a sensor's gain, or a force that is small, is not looked at. NaN unless the truncation is
+  /// kTransient. Throws as invert() does.
+  double ringing_misfit(const ReactionPair& reactions, const SensorNoiseLevel& noise,
+                        JointWorkspace& workspace) const;
+
  private:
   struct SidePower {
     bool recorded = false;
@@ -206,10 +213,10 @@ class JointInversion {
   std::vector<Complex> mobility_;
   std::array<double, 2> arrival_ = {0.0, 0.0};  ///< [s]
   double largest_transfer_ = 0.0;
-  double fundamental_ = 0.0;
-  std::vector<double> decay_;   ///< exp(−σ t_j), empty for σ = 0
-  std::vector<double> growth_;  ///< exp(σ t_j)/K
-  double weight_power_ = 0.0;   ///< W = Σ_j exp(−2σ t_j)
+  double fundamental_ = 0.0, highest_ = 0.0;  // frequencies of modes [Hz]
+  std::vector<double> decay_;                 ///< exp(−σ t_j), empty for σ = 0
+  std::vector<double> growth_;                ///< exp(σ t_j)/K
+  double weight_power_ = 0.0;                 ///< W = Σ_j exp(−2σ t_j)
   PriorGrid grid_;
   EvidenceCurve curve_;
   TransientFit transient_;

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
+#include "libinverse/joint/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
@@ -130,6 +133,53 @@ void TransientFit::subtract(const Setting& setting, Spectra spectra, Workspace& 
     if (!spectra[0].empty()) spectra[0][k] -= reading(0, k) * left;
     if (!spectra[1].empty()) spectra[1][k] -= reading(1, k) * right;
   });
+}
+
+TransientFit TransientFit::with_near_poles(double step) const {
+  TransientFit fit = *this;
+  for (std::size_t n = 0; n < modes_.size(); ++n) {
+    fit.modes_.push_back(modes_[n]);
+    fit.modes_.back().pole *= std::exp(step / sample_rate_);
+    fit.rates_.push_back(rates_[n] + step);
+    fit.contact_.push_back(contact_[n]);
+  }
+  return fit;
+}
+
+// a e^{λt} + b e^{(λ + ε)t} is (a + b) e^{(λ + δ)t} with δ = ε b/(a + b), as long as δ and ε are
+// small over the record. A mode that it does not show tells no pole.
+void TransientFit::move_poles(double step, const Workspace& workspace) {
+  for (std::size_t n = 0; n < modes_.size(); ++n) {
+    const Complex own = workspace.decay(n), near = workspace.decay(modes_.size() + n);
+    const Complex moved = step * near / (own + near);
+    if (!(std::abs(moved) <= kMostMoved * std::abs(step))) continue;
+    rates_[n] += moved;
+    modes_[n].pole = std::exp(rates_[n] / sample_rate_);
+  }
+}
+
+double TransientFit::ringing_misfit(Setting setting, std::size_t side,
+                                    std::span<const Complex> spectrum, std::size_t bins,
+                                    Workspace& workspace) const {
+  const std::vector<double> no_force(bins, 0.0);
+  setting.prior = no_force;
+  setting.noise_variance[1 - side] = 0.0;
+  const double step = -kNearPole * grid_.spacing / (2.0 * std::numbers::pi);
+  TransientFit fit = *this;
+  fit.grid_.bins = bins;
+  double misfit = kMostRinging;
+  for (double before = std::numeric_limits<double>::infinity(); misfit < 0.5 * before;) {
+    before = misfit;
+    std::vector<Complex> left(spectrum.begin(), spectrum.begin() + static_cast<Index>(bins));
+    Spectra one;
+    one[side] = left;
+    fit.with_near_poles(step).subtract(setting, one, workspace);
+    fit.move_poles(step, workspace);
+    double sum = 0.0;
+    for (std::size_t k = 1; k < bins; ++k) sum += std::norm(left[k]);
+    misfit = sum / (static_cast<double>(bins - 1) * setting.noise_variance[side]);
+  }
+  return misfit;
 }
 
 // What they do at the contact; their velocity is Re(λ_n c_n exp(λ_n t)).

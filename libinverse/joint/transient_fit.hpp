@@ -51,6 +51,13 @@ class TransientFit {
   /// bin).
   void subtract(const Setting& setting, Spectra spectra, Workspace& workspace) const;
 
+  /// Mean over the bins 1 … `bins` − 1 of what free decays, without a force, leave of one
+  /// reaction's spectrum over the noise variance: 1 where the string rings by itself. The poles are
+  /// the record's own: a second decay exp((λ_n + ε) t) a mode is what λ_n being off makes of the
+  /// first, and moves it (Gauss and Newton), as long as the misfit falls.
+  double ringing_misfit(Setting setting, std::size_t side, std::span<const Complex> spectrum,
+                        std::size_t bins, Workspace& workspace) const;
+
   /// Adds the decays' own displacement, or velocity, at the contact to its spectrum, from bin
   /// `first` on.
   void add_motion(bool velocity, std::size_t first, std::span<Complex> spectrum,
@@ -97,6 +104,8 @@ class TransientFit {
   void fill_effect(const Setting& setting, const Effect& effect, Signal signal,
                    std::ptrdiff_t first, Workspace& workspace) const;
   std::vector<RingingMode> moving(bool velocity) const;
+  TransientFit with_near_poles(double step) const;
+  void move_poles(double step, const Workspace& workspace);
   template <typename Take>
   void add_up(std::span<const RingingMode> modes, std::size_t first, Take take) const;
   Complex reading(std::size_t side, std::size_t k) const;

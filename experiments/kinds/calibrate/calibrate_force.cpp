@@ -1,6 +1,7 @@
 #include "experiments/kinds/calibrate/calibrate_force.hpp"
 
 #include "libcalib/identifiability/tuning.hpp"
+#include "libinverse/joint/joint_inversion.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -87,6 +88,21 @@ std::vector<InversionResult> signals_of_models(
   return results;
 }
 
+// Of a record that the model explains.
+double ringing_misfit(const CalibrateOptions& options, const Observation& observation,
+                      const CalibrationOutcome& outcome) {
+  const auto& found = outcome.result.continuation;
+  if (!found || !found->right || observation.truth) return CalibratedForce{}.ringing_misfit;
+  const JointInversion inversion(
+      outcome.refined.basis, outcome.refined.contact, observation.samples(),
+      observation.sample_rate,
+      {.truncation = Truncation::kTransient, .support = options.calibration.support.support(true)});
+  JointWorkspace workspace;
+  return inversion.ringing_misfit(
+      {observation.reactions[0]->samples, observation.reactions[1]->samples}, {.rms = found->noise},
+      workspace);
+}
+
 }  // namespace
 
 InversionOptions with_estimator(const char* name, InversionOptions options) {
@@ -105,6 +121,7 @@ CalibratedForce identify_calibrated(const CalibrateOptions& options, const Obser
     const auto signals = signals_of_models(options, measured, outcome, found, outputs, stop);
     for (SideIdentification& side : found.sides) widen(signals, side.estimate);
   }
+  found.ringing_misfit = ringing_misfit(options, found.observation, outcome);
   for (SideIdentification& side : found.sides) {
     score_side(found.observation, inversion.score, side);
   }

@@ -9,6 +9,9 @@ struct CalibratedForce {
   Sensor sensors;           ///< what was found of that at x = L, and taken out
   Observation observation;  ///< without it
   std::vector<SideIdentification> sides;
+  /// What free decays leave of the record over its noise (JointInversion::ringing_misfit); NaN of a
+  /// simulation and of a fit that is not right.
+  double ringing_misfit = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Inverts the record with the refined model. Of a fit with an estimate the deviations hold what

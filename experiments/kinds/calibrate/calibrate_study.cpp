@@ -3,6 +3,8 @@
 
 #include "experiments/kinds/calibrate/calibrate_force.hpp"
 #include "experiments/report/result.hpp"
+#include "libcalib/identifiability/tuning.hpp"
+#include "libinverse/joint/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -31,6 +33,7 @@ struct Found {
   const Observation& observation;  // the sensors' differences taken out
   const Sensor& sensors;
   const std::vector<SideIdentification>& sides;
+  double ringing_misfit;
   const ContinuationResult* estimate() const { return outcome.result.continuation.get(); }
 };
 
@@ -109,13 +112,42 @@ std::string too_many_modes(const Found& found) {
       stated, *identified, modes_told(*identified));
 }
 
+// Of a record that tells hardly a mode, where nothing else holds the string: f0 and x_c have many
+// places in its noise.
+std::string too_few_modes(const CalibrateOptions& options, const Found& found) {
+  const ContinuationResult* estimate = found.estimate();
+  const bool is_open = found.measured.truth == nullptr && starts_from_record(options.calibration);
+  if (!is_open || !estimate || !estimate->frequencies_free) return {};
+  const auto identified =
+      std::ranges::count(estimate->modes, ModeSource::kIdentified, &ModeVerdict::source);
+  if (identified >= kLeastIdentified) return {};
+  return fmt::format(
+      "the record tells {} of its modes, too few for a string of which nothing else is known: f0, "
+      "B and x_c may be those of another minimum; record for longer, with less noise or while the "
+      "string sounds, or state priors "
+      "(calibration.parameters.priors)",
+      identified == 0 ? "none" : fmt::format("{}", identified));
+}
+
+// Of a record in which nothing drives the string: what tells x_c is the force.
+std::string no_force(const Found& found) {
+  if (!(found.ringing_misfit < kRingsByItself)) return {};
+  return fmt::format(
+      "nothing drives the string in this record: it rings by itself (free decays leave {:.3g} "
+      "times the noise of it), which does not tell x_c; kind: identify finds its modes, or take a "
+      "part in which a bow, a finger or a hammer is at work",
+      found.ringing_misfit);
+}
+
 // What was asked: the verdict, the parameters, the frequencies against their law, the force.
 void add_answer(const CalibrateOptions& options, const InvertOptions& shown, const Found& found,
                 StudyResult& result) {
   add_calibration_summary(found.outcome, result);
   add_calibration_warnings(found.outcome, result);
-  const std::string too_many = too_many_modes(found);
-  if (!too_many.empty()) reject_calibration(too_many, result);
+  for (const std::string& reason :
+       {too_many_modes(found), no_force(found), too_few_modes(options, found)}) {
+    if (!reason.empty()) reject_calibration(reason, result);
+  }
   if (const ContinuationResult* estimate = found.estimate()) {
     note(result, chi2_text(*estimate),
          estimate->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure);
@@ -215,7 +247,8 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
       *this, measured, outcome, inversion_outputs(shown.figures, shown.wants_all()), context.stop);
 
   StudyResult result;
-  const Found found{outcome, measured, force.observation, force.sensors, force.sides};
+  const Found found{outcome,       measured,    force.observation,
+                    force.sensors, force.sides, force.ringing_misfit};
   add_answer(*this, shown, found, result);
   add_account(*this, shown, found, result);
   return result;

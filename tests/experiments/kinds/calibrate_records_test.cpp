@@ -93,15 +93,24 @@ TEST_F(CalibrateRecords, FailWhereTheStringLiesBeyondTheBounds) {
   EXPECT_EQ(options.run(context()).status, report::Status::kOk);
 }
 
+struct Lines {
+  double duration = 0.5;  // of the record [s]
+  double noise = 0.1;     // over a reaction's standard deviation
+  double begins = 0.0;    // the record, after the force [s]
+  double ends = 10.0;     // the force [s]
+};
+
 // Reactions of the paper's string, 60 modes each stepped exactly for a force that is linear between
 // the samples of a grid eight times as fine; lines of the force, k^(-3/2), whose phases wander.
-std::vector<Signal> lines_of_force(double duration, double sample_rate) {
+std::vector<Signal> lines_of_force(const Lines& lines) {
+  constexpr double sample_rate = 44100.0;
   StringModel string = paper_scene().string;
   string.modes = 60;
   const ModalBasis basis = make_modal_basis(string);
   const std::vector<double> shape = basis.shape_at(0.03);
   constexpr std::size_t kFine = 8, kLines = 30;
-  const auto count = static_cast<std::size_t>(duration * sample_rate);
+  const auto first_sample = static_cast<std::size_t>(lines.begins * sample_rate);
+  const auto count = first_sample + static_cast<std::size_t>(lines.duration * sample_rate);
   const double step = 1.0 / (static_cast<double>(kFine) * sample_rate);
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -118,6 +127,7 @@ std::vector<Signal> lines_of_force(double duration, double sample_rate) {
       force += std::sin(phases[k - 1]) * std::pow(static_cast<double>(k), -1.5);
     }
     if (i == 0) phases.assign(kLines, 0.0), force = 0.0;
+    if (static_cast<double>(i) * step > lines.ends) force = 0.0;
     double at_left = 0.0, at_right = 0.0;
     for (std::size_t n = 0; n < basis.size(); ++n) {
       // q = Im z/ω_d of z' = λz + f φ/m, λ = −ζω + iω_d.
@@ -133,22 +143,21 @@ std::vector<Signal> lines_of_force(double duration, double sample_rate) {
       at_right += n % 2 == 0 ? -pull : pull;
     }
     before = force;
-    if (i % kFine != 0) continue;
+    if (i % kFine != 0 || i < first_sample * kFine) continue;
     left.samples.push_back(at_left);
     right.samples.push_back(at_right);
   }
   for (Signal* signal : {&left, &right}) {
-    const double noise = 0.1 * standard_deviation(signal->samples);
+    const double noise = lines.noise * standard_deviation(signal->samples);
     for (double& x : signal->samples) x += noise * normal(random);
   }
   return {left, right};
 }
 
-// Half a second of lines that fade into noise tells about ten modes of the forty in whose band
-// there is power.
-TEST_F(CalibrateRecords, TakeNoMoreModesThanAreTold) {
-  write("stroke.csv", lines_of_force(0.5, 44100.0));
-  const auto calibrated = [&](const std::string& modes) {
+class CalibrateLines : public CalibrateRecords {
+ protected:
+  StudyResult calibrated(const Lines& lines, const std::string& modes) {
+    write("stroke.csv", lines_of_force(lines));
     const LoadedExperiment loaded = load_experiment(parse_yaml(
         "kind: calibrate\nrecord: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}}\n"
         "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196.5 Hz, modes: " +
@@ -156,8 +165,13 @@ TEST_F(CalibrateRecords, TakeNoMoreModesThanAreTold) {
         (folder() / "experiment.yaml").string()));
     EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
     return loaded.experiment->run(context());
-  };
-  const StudyResult taken = calibrated("auto");
+  }
+};
+
+// Half a second of lines that fade into noise tells about ten modes of the forty in whose band
+// there is power.
+TEST_F(CalibrateLines, TakeNoMoreModesThanAreTold) {
+  const StudyResult taken = calibrated({}, "auto");
   EXPECT_EQ(taken.status, report::Status::kOk) << taken.answer;
   EXPECT_THAT(taken.summary, testing::HasSubstr("modes taken (modes: auto): none above mode"));
   const json found = calibration_of(taken);
@@ -167,9 +181,28 @@ TEST_F(CalibrateRecords, TakeNoMoreModesThanAreTold) {
       EXPECT_NEAR(parameter["final"].get<double>(), 196.0, 4.0 * parameter["sd"].get<double>());
     }
   }
-  const StudyResult stated = calibrated("60");
+  const StudyResult stated = calibrated({}, "60");
   EXPECT_EQ(stated.status, report::Status::kFailed);
   EXPECT_THAT(stated.summary, testing::HasSubstr("60 modes are stated, and none above mode"));
+}
+
+// Where nothing drives the string, both ends still tell f0 and B, but no x_c: the force of this
+// record has ended before it begins.
+TEST_F(CalibrateLines, RefuseAStringThatRingsByItself) {
+  const StudyResult ringing = calibrated({.noise = 0.001, .begins = 0.21, .ends = 0.2}, "auto");
+  EXPECT_EQ(ringing.status, report::Status::kFailed) << ringing.summary;
+  EXPECT_THAT(ringing.answer, testing::HasSubstr("it rings by itself (free decays leave 1"));
+  EXPECT_THAT(ringing.answer, testing::HasSubstr("kind: identify"));
+  // The end of the force is within the record.
+  const StudyResult driven = calibrated({.noise = 0.01, .begins = 0.1, .ends = 0.2}, "auto");
+  EXPECT_THAT(driven.summary, testing::Not(testing::HasSubstr("rings by itself (")));
+}
+
+// Noise as large as the reactions leaves no mode to tell, and f0 and x_c many places.
+TEST_F(CalibrateLines, RefuseARecordThatTellsNoMode) {
+  const StudyResult noisy = calibrated({.duration = 0.2, .noise = 2.0}, "auto");
+  EXPECT_EQ(noisy.status, report::Status::kFailed);
+  EXPECT_THAT(noisy.summary, testing::HasSubstr("of its modes, too few for a string"));
 }
 
 // One would count twice.
