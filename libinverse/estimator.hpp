@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct EstimationModel {
   std::size_t samples = 0;
   double sample_rate = 0.0;  ///< [Hz]
   bool recorded = false;     ///< a real string has modes above the last one stated
+  /// Whether the ends feel the bending of the string, where an estimator is not told
+  /// (StringSupport).
+  std::optional<bool> bending = {};
 };
 
 /// An estimator with its transfer functions; const and safe to use from several threads.
@@ -57,8 +61,9 @@ class Estimator {
   }
   /// How the sensors read, as far as the estimator is told.
   virtual SensorPair sensors() const { return {}; }
-  /// Whether it takes the ends to feel the bending of the string (StringSupport).
-  virtual bool feels_bending() const { return false; }
+  /// Whether it takes the ends to feel the bending of the string (StringSupport); nothing: as the
+  /// model says.
+  virtual std::optional<bool> feels_bending() const { return false; }
   /// Whether the regularizer and the parameter choice of the method play a part.
   virtual bool filters() const { return false; }
   /// Numbers a sample of the record that the work on one holds at a time, about.

@@ -143,6 +143,8 @@ std::string complaint_about_name(const std::string& name);
 
 /// A frequency such as 44.1 kHz as a number of hertz. Throws CLI::ValidationError.
 std::string hertz_of(const std::string& text);
+/// --sample-rate [Hz] of a file that has none.
+CLI::Option& declare_rate(CLI::App& command, double& rate);
 
 /// The text where it is a size such as 8GB. Throws CLI::ValidationError.
 std::string require_size(std::string text);

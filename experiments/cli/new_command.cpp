@@ -1,6 +1,7 @@
 // new: an experiment file to start from.
 #include <fmt/format.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "experiments/cli/command.hpp"
@@ -22,6 +23,7 @@ namespace {
 struct NewArguments {
   std::string kind, record, out;
   std::string length, linear_density;
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();  // [Hz]
 };
 
 // A file of configs/ that shows a kind at its simplest.
@@ -145,29 +147,9 @@ std::string position_line(const ToldString& told, double length, const RecordOpt
       1e3 * told.contact * length, told.contact, yaml_string(record.left.channel));
 }
 
-std::string file_for_record(const NewArguments& arguments) {
-  MODCAL_REQUIRE(arguments.kind == "invert" || arguments.kind == "calibrate",
-                 "a record is read by the kinds invert and calibrate, not by {}: leave the record "
-                 "out, or name one of these",
-                 arguments.kind);
-  const InspectionReport report = inspect(arguments.record, {.memory = machine_memory()});
-  MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());
-  RecordOptions record = report.record;
-  // Of a large file inspect reads the head alone; what follows reads all of it.
-  require_memory(record.file, record.format, machine_memory());
-  MODCAL_REQUIRE(record.has_left && record.has_right,
-                 "{} has one reaction: which string it is takes both; state it by hand as "
-                 "`modcal inspect` shows",
-                 arguments.record);
-  ToldString told = told_by(record);
-  // One sensor may read with the other sign.
-  RecordOptions other = record;
-  other.right.turned = true;
-  const ToldString turned = told_by(other);
-  if (turned.misfit < told.misfit && (turned.explained || !told.explained)) {
-    told = turned;
-    record = other;
-  }
+// The experiment on a record of the string that its ends tell.
+std::string text_for(const NewArguments& arguments, const ToldString& told,
+                     const RecordOptions& record) {
   const double length = length_of(arguments, told);
   const double density = stated(arguments.linear_density, "--linear-density", "kg/m", 1e-3);
   const bool invert = arguments.kind == "invert";
@@ -181,6 +163,9 @@ std::string file_for_record(const NewArguments& arguments) {
                  : "As it is, modcal run runs it.",
       arguments.kind, yaml_string(arguments.record),
       yaml_string(seen_from(arguments.out, arguments.record)));
+  if (std::isfinite(arguments.sample_rate)) {
+    text += fmt::format("  sample_rate: {:.15g} Hz\n", arguments.sample_rate);
+  }
   text += channel_lines(record);
   text += fmt::format(
       "string:\n"
@@ -200,10 +185,43 @@ std::string file_for_record(const NewArguments& arguments) {
       invert ? "  # state yours, or calibrate first"
              : "  # a start: the calibration finds every mode's own");
   text += position_line(told, length, record);
+  if (!invert) {
+    text +=
+        "# Supports that hold the string feel its bending, too, which a force is told by:\n"
+        "# calibration: {reaction: support}  # tension: they do not; unsaid, the error bars hold "
+        "both\n";
+  }
   if (!told.explained) {
     text += "# The reactions are not quite those of one string: modcal validate says why.\n";
   }
   return text;
+}
+
+std::string file_for_record(const NewArguments& arguments) {
+  MODCAL_REQUIRE(arguments.kind == "invert" || arguments.kind == "calibrate",
+                 "a record is read by the kinds invert and calibrate, not by {}: leave the record "
+                 "out, or name one of these",
+                 arguments.kind);
+  const InspectionReport report =
+      inspect(arguments.record, {.sample_rate = arguments.sample_rate, .memory = machine_memory()});
+  MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());
+  RecordOptions record = report.record;
+  // Of a large file inspect reads the head alone; what follows reads all of it.
+  require_memory(record.file, record.format, machine_memory());
+  MODCAL_REQUIRE(record.has_left && record.has_right,
+                 "{} has one reaction: which string it is takes both; state it by hand as "
+                 "`modcal inspect` shows",
+                 arguments.record);
+  ToldString told = told_by(record);
+  // One sensor may read with the other sign.
+  RecordOptions other = record;
+  other.right.turned = true;
+  const ToldString turned = told_by(other);
+  if (turned.misfit < told.misfit && (turned.explained || !told.explained)) {
+    told = turned;
+    record = other;
+  }
+  return text_for(arguments, told, record);
 }
 
 ExitCode write_new(const NewArguments& arguments) {
@@ -232,6 +250,7 @@ void declare(CLI::App& command, NewArguments& arguments) {
   command.add_option("--length", arguments.length, "vibrating length, \"0.33 m\"")->needs(record);
   command.add_option("--linear-density", arguments.linear_density, "mass per length, \"1 g/m\"")
       ->needs(record);
+  declare_rate(command, arguments.sample_rate).needs(record);
   command.add_option("--out", arguments.out, "file to write; default: standard output")
       ->check(complaint_about_name);
 }

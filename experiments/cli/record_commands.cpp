@@ -7,14 +7,16 @@
 #include "libsim/records/formats.hpp"
 
 namespace modcal {
+
+CLI::Option& declare_rate(CLI::App& command, double& rate) {
+  return *command
+              .add_option("--sample-rate", rate, "such as \"44.1 kHz\", where the file has none")
+              ->transform(hertz_of);
+}
+
 namespace {
 
 std::string format_words() { return fmt::format("{}", fmt::join(record_format_choices(), ", ")); }
-
-void declare_rate(CLI::App& command, double& rate) {
-  command.add_option("--sample-rate", rate, "such as \"44.1 kHz\", where the file has none")
-      ->transform(hertz_of);
-}
 
 struct InspectArguments {
   std::string file;

@@ -95,10 +95,7 @@ void add_section(const std::string& name, const std::string& title, StudyResult&
     if (auto* table = std::get_if<report::Table>(&block)) name_it(table->id);
     if (auto* figure = std::get_if<report::Figure>(&block)) name_it(figure->id);
   }
-  if (!result.answer.empty()) {
-    result.blocks.insert(result.blocks.begin(), report::Text{result.answer});
-    if (result.first_screen > 0) ++result.first_screen;
-  }
+  if (!result.answer.empty()) result.add_first(report::Text{result.answer});
   result.move_to(report, fmt::format("{}: {}", name, title), fmt::format("Details of {}", name));
 }
 

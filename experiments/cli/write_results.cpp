@@ -36,8 +36,7 @@ std::string status_text(const LoadedExperiment& loaded, const StudyResult& resul
 }
 
 // How many tasks of a list failed, which and why; empty: none.
-std::string failures_text(const LoadedExperiment& loaded, const StudyResult& result,
-                          const RunSettings& settings) {
+std::string failures_text(const LoadedExperiment& loaded, const StudyResult& result) {
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
   if (list == nullptr || result.failures.empty()) return {};
   constexpr std::size_t kShown = 5;
@@ -46,7 +45,7 @@ std::string failures_text(const LoadedExperiment& loaded, const StudyResult& res
   for (std::size_t i = 0; i < std::min(kShown, result.failures.size()); ++i) {
     const FailedTasks& failed = result.failures[i];
     text +=
-        fmt::format("  {}{}: {}\n", fmt::join(failed.first, ", "),
+        fmt::format("  task {}{}: {}\n", fmt::join(failed.first, ", "),
                     failed.count > failed.first.size() ? fmt::format(" … ({} tasks)", failed.count)
                                                        : std::string(),
                     failed.reason.substr(0, failed.reason.find('\n')));
@@ -54,8 +53,7 @@ std::string failures_text(const LoadedExperiment& loaded, const StudyResult& res
   if (result.failures.size() > kShown) {
     text += fmt::format("  and {} other reasons, see tasks.csv\n", result.failures.size() - kShown);
   }
-  return text + fmt::format("one of them again, with all that is drawn: modcal replay {} {}\n",
-                            shell_word(settings.out.string()), result.failures[0].first[0]);
+  return text;
 }
 
 nlohmann::ordered_json failures_json(const StudyResult& result) {
@@ -89,6 +87,9 @@ report::Report report_of(const LoadedExperiment& loaded, StudyResult& result,
   report.status_text = status_text(loaded, result);
   if (!result.answer.empty()) {
     report.status_text += (report.status_text.empty() ? "" : ": ") + result.answer;
+  }
+  if (std::string failures = failures_text(loaded, result); !failures.empty()) {
+    result.add_first(report::Text{std::move(failures), report::Text::Kind::kFailure});
   }
   result.move_to(report, "Results", "Details");
   if (dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr) {
@@ -200,7 +201,11 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
 
 void print_failures(const LoadedExperiment& loaded, const StudyResult& result,
                     const RunSettings& settings) {
-  if (!answer_style().json) say_text(failures_text(loaded, result, settings));
+  const std::string failures = failures_text(loaded, result);
+  if (answer_style().json || failures.empty()) return;
+  say_text(failures +
+           fmt::format("one of them again, with all that is drawn: modcal replay {} {}\n",
+                       shell_word(settings.out.string()), result.failures[0].first[0]));
 }
 
 ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSettings settings,

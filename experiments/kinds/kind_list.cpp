@@ -12,26 +12,9 @@
 namespace modcal {
 namespace {
 
-void add_numbers(const report::Table& table, RunOutcome& outcome) {
-  std::set<std::string> labels;
-  for (const std::vector<report::Cell>& row : table.rows) {
-    // A table of one row needs no names of rows; rows of one name are counted.
-    std::string prefix = table.id + ".";
-    const bool is_one = table.rows.size() == 1;
-    if (!is_one) {
-      std::string label = report::cell_text(row[0], table.columns[0]);
-      if (!labels.insert(label).second) label += fmt::format(".{}", labels.size());
-      labels.insert(label);
-      prefix += label + ".";
-    }
-    for (std::size_t c = is_one ? 0 : 1; c < row.size(); ++c) {
-      const auto* number = std::get_if<double>(&row[c].value);
-      const auto* count = std::get_if<std::int64_t>(&row[c].value);
-      if (number == nullptr && count == nullptr) continue;
-      outcome.numbers.emplace_back(prefix + table.columns[c].key,
-                                   number != nullptr ? *number : static_cast<double>(*count));
-    }
-  }
+// What a search started from and how its parameters hang together tell nothing of the axes.
+bool is_shown_first(const std::string& name) {
+  return !name.ends_with(".initial") && !name.starts_with("correlation");
 }
 
 // Draws of one setting: tasks that differ in seeds alone.
@@ -67,23 +50,27 @@ class RunSummary {
       if (known_names_.insert(name).second) names_.push_back(name);
       if (std::isfinite(value)) setting.samples[name].add(value);
     }
+    for (const auto& [name, unit] : outcome.units) units_.try_emplace(name, unit);
     tasks_.push_back({task, std::move(outcome)});
   }
 
   report::Table settings() const {
-    return report::table_of({.id = "settings",
-                             .title = "Medians by setting",
-                             .caption = "Draws of one setting differ in their seeds alone."},
-                            settings_, [this](report::RowWriter& row, const Setting& setting) {
-                              for (std::size_t i = 0; i < setting.values.size(); ++i) {
-                                row({.key = axes_[setting_axes_[i]]}, setting.values[i]);
-                              }
-                              row({.key = "n"}, setting.n);
-                              row({.key = "failures"}, setting.failures);
-                              for (const std::string& name : names_) {
-                                row({.key = name}, known(sample_of(setting, name).median()));
-                              }
-                            });
+    report::Table table = report::table_of(
+        {.id = "settings",
+         .title = "Medians by setting",
+         .caption = "Draws of one setting differ in their seeds alone."},
+        settings_, [this](report::RowWriter& row, const Setting& setting) {
+          for (std::size_t i = 0; i < setting.values.size(); ++i) {
+            row({.key = axes_[setting_axes_[i]]}, setting.values[i]);
+          }
+          row({.key = "n"}, setting.n);
+          row({.key = "failures"}, setting.failures);
+          for (const std::string& name : names_) {
+            row({.key = name, .unit = unit_of(name)}, known(sample_of(setting, name).median()));
+          }
+        });
+    for (const Setting& setting : settings_) table.row_tags.push_back(tags_of(setting));
+    return table;
   }
 
   std::string tasks_csv() const {
@@ -112,7 +99,7 @@ class RunSummary {
     constexpr std::size_t kMostMaps = 6;
     std::vector<report::Table> maps;
     if (setting_axes_.size() != 2) return maps;
-    for (const std::string& name : names_) {
+    for (const std::string& name : shown_first()) {
       report::Table map = this->map(name, maps.size() + 1);
       if (!map.rows.empty()) maps.push_back(std::move(map));
       if (maps.size() == kMostMaps) break;
@@ -132,9 +119,9 @@ class RunSummary {
       std::string unit;
       const std::vector<double> x = numbers_of(axis, unit);
       if (x.empty()) continue;
-      for (const std::string& name : names_) {
+      for (const std::string& name : shown_first()) {
         report::Panel panel{.x = {.label = axes_[setting_axes_[axis]], .unit = unit},
-                            .y = {.label = name},
+                            .y = {.label = name, .unit = unit_of(name)},
                             .series = series_of(name, axis, x)};
         if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
         if (figure.panels.size() == kMostPanels) break;
@@ -145,6 +132,28 @@ class RunSummary {
   }
 
  private:
+  // The numbers that answer, then the others.
+  std::vector<std::string> shown_first() const {
+    std::vector<std::string> names = names_;
+    std::ranges::stable_partition(names, is_shown_first);
+    return names;
+  }
+
+  std::string unit_of(const std::string& name) const {
+    const auto unit = units_.find(name);
+    return unit == units_.end() ? std::string() : unit->second;
+  }
+
+  // By every axis but the one at which a series has all values.
+  report::Tags tags_of(const Setting& setting,
+                       std::size_t except = std::numeric_limits<std::size_t>::max()) const {
+    report::Tags tags;
+    for (std::size_t i = 0; i < setting.values.size(); ++i) {
+      if (i != except) tags.push_back({axes_[setting_axes_[i]], {setting.values[i]}});
+    }
+    return tags;
+  }
+
   // Rows and columns in the order of their first use, dark where the number is largest; without
   // rows where it is one number everywhere.
   report::Table map(const std::string& name, std::size_t number) const {
@@ -226,7 +235,8 @@ class RunSummary {
         series.push_back({.label = others.empty() ? "median, 10-90 %"
                                                   : fmt::format("{}", fmt::join(others, ", ")),
                           .style = report::SeriesStyle::kLineWithPoints,
-                          .color = static_cast<report::ColorRole>(color)});
+                          .color = static_cast<report::ColorRole>(color),
+                          .tags = tags_of(settings_[s], axis)});
       }
       add_band(series[place->second], x[s], Spread::of(sample));
       medians.insert(sample.median());
@@ -240,28 +250,13 @@ class RunSummary {
   std::vector<std::size_t> setting_axes_;  // places of those that are no seeds
   std::vector<std::string> names_;         // of the numbers, in the order of their first use
   std::set<std::string> known_names_;
+  std::map<std::string, std::string> units_;  // by name
   std::map<std::vector<std::string>, std::size_t> setting_of_;
   std::vector<Setting> settings_;
   std::vector<RunTask> tasks_;
 };
 
 }  // namespace
-
-void RunOutcome::visit(ResultVisitor& visitor) {
-  visitor({.key = "failure", .optional = true}, failure);
-  if (failure.empty()) visitor({.key = "numbers"}, numbers);
-}
-
-RunOutcome run_outcome(const StudyResult& result) {
-  RunOutcome outcome;
-  if (result.status == report::Status::kFailed) {
-    outcome.failure = result.summary.empty() ? "the run has failed" : result.summary;
-  }
-  for (const report::Block& block : result.blocks) {
-    if (const auto* table = std::get_if<report::Table>(&block)) add_numbers(*table, outcome);
-  }
-  return outcome;
-}
 
 StudyResult sum_up_runs(const TaskExperiment& list, const TaskOutcomes& outcomes) {
   StudyResult result;

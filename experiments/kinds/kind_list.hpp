@@ -43,10 +43,11 @@ struct RunOutcome {
   std::string failure;  ///< why there are none; empty: there are
   /// "levels.f_c.std": table, first cell of the row (where there are several rows), column.
   std::vector<std::pair<std::string, double>> numbers;
+  std::vector<std::pair<std::string, std::string>> units;  ///< of those that have one
   void visit(ResultVisitor& visitor);
 };
 
-/// The numbers of a result, or its summary as a failure where it has failed.
+/// The numbers of a result, or the reason where it has failed.
 RunOutcome run_outcome(const StudyResult& result);
 
 /// A row a setting with the median of every number over its draws (draws of one setting differ in

@@ -15,7 +15,8 @@ std::string key_of(const AssumedModel& model, const Observation& observation,
   const auto add = [&key](double value) { key += fmt::format(" {:a}", value); };
   for (const double value :
        {model.contact, observation.sample_rate, static_cast<double>(observation.samples()),
-        observation.truth ? 0.0 : 1.0, basis.length, basis.tension}) {
+        observation.truth ? 0.0 : 1.0, basis.length, basis.tension,
+        model.bending ? static_cast<double>(*model.bending) : -1.0}) {
     add(value);
   }
   for (const auto* part : {&basis.omega, &basis.zeta, &basis.mass}) {
@@ -53,7 +54,8 @@ InversionCache::Prepared prepare_estimator(const AssumedModel& model,
                                      .contact = model.contact,
                                      .samples = observation.samples(),
                                      .sample_rate = observation.sample_rate,
-                                     .recorded = observation.truth == nullptr});
+                                     .recorded = observation.truth == nullptr,
+                                     .bending = model.bending});
 }
 
 }  // namespace
@@ -236,10 +238,28 @@ std::vector<MotionScore> motion_scores(const Observation& observation, const Est
   return found;
 }
 
+namespace {
+
+// What both sensors have alike, their sign too, cancels in what a string is judged by.
+void doubt_sign(const Observation& observation, SideIdentification& side) {
+  constexpr double kOpposed = -0.5;
+  if (observation.truth || side.scores.empty()) return;
+  const double correlation = side.scores.front().correlation;
+  if (!(correlation < kOpposed)) return;
+  side.estimate.warnings.push_back(fmt::format(
+      "the force that was recorded has the other sign (R = {:.3g}): if it is the right one, both "
+      "reactions are those on the supports; state turned: true for both (a force > 0 pushes those "
+      "on the string below 0)",
+      correlation));
+}
+
+}  // namespace
+
 void score_side(const Observation& observation, const ScoreOptions& score,
                 SideIdentification& side) {
   static_cast<ForceScores&>(side) = scores_of(observation, ScoredForce(side.estimate), &score);
   side.motion = motion_scores(observation, side.estimate, score);
+  doubt_sign(observation, side);
 }
 
 InversionCache::Prepared InversionCache::get(const AssumedModel& model,

@@ -57,7 +57,8 @@ struct ModelErrorOptions {
 /// The model an inversion starts from.
 struct AssumedModel {
   ModalBasis basis;
-  double contact = 0.0;  ///< x_c [m]
+  double contact = 0.0;              ///< x_c [m]
+  std::optional<bool> bending = {};  ///< whether the ends feel it, where that is stated
 };
 
 /// The true model with the stated errors; those of the frequencies are drawn from `key`.

@@ -86,6 +86,11 @@ struct StudyResult {
   }
   /// The answer is the first line of the summary.
   void answer_by_summary() { answer = summary.substr(0, summary.find('\n')); }
+  /// Before all others, on the first screen.
+  void add_first(report::Block block) {
+    blocks.insert(blocks.begin(), std::move(block));
+    if (first_screen > 0) ++first_screen;
+  }
   /// What is added from here on are details.
   void end_first_screen() { first_screen = blocks.size(); }
   /// Takes the blocks apart: what answers the question, and details. Where nothing says so, the

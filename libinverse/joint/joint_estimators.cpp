@@ -29,6 +29,15 @@ double noise_share(const ReactionPair& reactions, const SensorNoiseLevel& noise)
   return share;
 }
 
+// What the model says of the ends holds where the estimator says nothing.
+StringSupport support_of(const EstimationModel& model, const SupportOptions& stated) {
+  StringSupport support = stated.support(model.recorded);
+  if (stated.bending() || !model.bending) return support;
+  support.bending = *model.bending;
+  support.bending_open = false;
+  return support;
+}
+
 // Prepares an inversion when a record asks for its contour; safe to use from several threads.
 class PreparedJoint : public PreparedEstimator {
  public:
@@ -41,7 +50,7 @@ class PreparedJoint : public PreparedEstimator {
         options_(options),
         recorded_(model.recorded),
         arrival_(first_arrivals(basis_, contact_, options.sensors)),
-        support_(options.transfer.support(model.recorded)),
+        support_(support_of(model, options.transfer)),
         noise_(basis_, contact_, samples_, sample_rate_, support_, options.sensors),
         prior_(std::move(prior)) {}
 

@@ -24,7 +24,7 @@ class JointEstimator final : public Estimator {
   /// Throws InvalidInput for options out of range.
   explicit JointEstimator(const Options& options);
   SensorPair sensors() const override { return joint_.sensors; }
-  bool feels_bending() const override { return joint_.transfer.support(false).bending; }
+  std::optional<bool> feels_bending() const override { return joint_.transfer.bending(); }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;
@@ -45,7 +45,7 @@ class LinearLimitEstimator final : public Estimator {
   /// Throws InvalidInput for options out of range.
   explicit LinearLimitEstimator(const Options& options);
   SensorPair sensors() const override { return joint_.sensors; }
-  bool feels_bending() const override { return joint_.transfer.support(false).bending; }
+  std::optional<bool> feels_bending() const override { return joint_.transfer.bending(); }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

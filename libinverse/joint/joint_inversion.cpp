@@ -41,6 +41,30 @@ void keep_what_sampling_shows(std::size_t samples, std::vector<Complex>& transfe
   if (samples % 2 == 0) transfer.back() = transfer.back().real();
 }
 
+StringTransfer bent_transfer(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
+                             const JointModel& model) {
+  StringSupport support = model.support;
+  support.bending = true;
+  return string_transfer(basis, contact, grid, support, model.sensors);
+}
+
+// With H for H', that of ends that feel the bending, F is found Σ conj(H_r) H'_r/Σ |H_r|² times as
+// large as it is: what it misses is 1 − Σ conj(H'_r) H_r/Σ |H'_r|² of what is found.
+std::vector<double> bending_shares(const std::array<std::vector<Complex>, 2>& transfer,
+                                   const StringTransfer& bent) {
+  std::vector<double> shares(transfer[0].size());
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    Complex both{};
+    double power = 0.0;
+    for (std::size_t r = 0; r < 2; ++r) {
+      both += std::conj(bent.reaction[r][k]) * transfer[r][k];
+      power += std::norm(bent.reaction[r][k]);
+    }
+    shares[k] = power > 0.0 ? std::norm(1.0 - both / power) : 0.0;
+  }
+  return shares;
+}
+
 }  // namespace
 
 double contour_of(const ModalBasis& basis, double duration, double noise_share) {
@@ -87,6 +111,9 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
     for (const Complex value : transfer_[r]) {
       largest_transfer_ = std::max(largest_transfer_, std::abs(value));
     }
+  }
+  if (model.support.bending_open && inharmonicity_of(basis) > 0.0) {
+    bending_share_ = bending_shares(transfer_, bent_transfer(basis, contact, grid, model));
   }
   if (basis.size() > 0) {
     fundamental_ = basis.frequency(0);

@@ -67,7 +67,10 @@ struct JointResult {
   std::vector<double> force_variance, velocity_variance;
   /// What the misfit adds to them.
   std::vector<double> force_excess, velocity_excess;
-  std::vector<double> side_misfit;            ///< of every bin, smoothed; where wanted
+  std::vector<double> side_misfit;  ///< of every bin, smoothed; where wanted
+  /// By how much it makes the force's deviation larger that nobody says whether the ends feel the
+  /// bending of the string.
+  double bending_widening = 1.0;
   std::array<double, 2> offset = {0.0, 0.0};  ///< subtracted from the reactions [N]
   /// By how much what is added below the first mode, where sensors drift and hum, makes the force's
   /// deviation larger.
@@ -198,6 +201,7 @@ class JointInversion {
   void apply_posterior(const Weights& weights, const JointMethod& method, JointWorkspace& workspace,
                        JointResult& result) const;
   void widen_by_misfit(bool keep, JointWorkspace& workspace, JointResult& result) const;
+  void widen_by_bending(JointWorkspace& workspace, JointResult& result) const;
   void count_bins(double kept_pairs, JointWorkspace& workspace, InversionResult& identified) const;
   double deviation_of(double sum, std::span<const Complex> transfer, std::span<const double> more,
                       const JointWorkspace& workspace) const;
@@ -216,7 +220,8 @@ class JointInversion {
   double fundamental_ = 0.0, highest_ = 0.0;  // frequencies of modes [Hz]
   std::vector<double> decay_;                 ///< exp(−σ t_j), empty for σ = 0
   std::vector<double> growth_;                ///< exp(σ t_j)/K
-  double weight_power_ = 0.0;                 ///< W = Σ_j exp(−2σ t_j)
+  std::vector<double> bending_share_;  ///< |1 − H/H′|², H′ with bending; empty: it is known
+  double weight_power_ = 0.0;          ///< W = Σ_j exp(−2σ t_j)
   PriorGrid grid_;
   EvidenceCurve curve_;
   TransientFit transient_;

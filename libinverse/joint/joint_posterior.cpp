@@ -198,6 +198,7 @@ void JointInversion::apply_posterior(const Weights& weights, const JointMethod& 
     }
   }
   widen_by_misfit(method.variances, workspace, result);
+  widen_by_bending(workspace, result);
   if (!workspace.level_known) workspace.variance[0] = 0.0;
   force.front() = force.front().real();
   if (samples() % 2 == 0) force.back() = force.back().real();

@@ -120,4 +120,18 @@ void JointInversion::widen_by_misfit(bool keep, JointWorkspace& workspace,
   result.slow_widening = slow > 0.0 ? std::sqrt(1.0 + slow / known) : 1.0;
 }
 
+void JointInversion::widen_by_bending(JointWorkspace& workspace, JointResult& result) const {
+  double known = 0.0, open = 0.0;
+  for (std::size_t k = workspace.level_known ? 0 : 1; k < bending_share_.size(); ++k) {
+    const double excess = bending_share_[k] * std::norm(workspace.spectrum[0][k]) / weight_power_;
+    known += workspace.variance[k];
+    open += excess;
+    workspace.variance[k] += excess;
+    if (result.force_excess.empty()) continue;
+    result.force_excess[k] += excess;
+    result.velocity_excess[k] += excess * std::norm(mobility_[k]);
+  }
+  result.bending_widening = open > 0.0 ? std::sqrt(1.0 + open / known) : 1.0;
+}
+
 }  // namespace modcal

@@ -109,10 +109,10 @@ constexpr double kClusterWidth = 1.0;
 /// Halved: not tried; at 1 89 to 100 %, 39 and 40 %.
 constexpr int kEndsOrder = 8;
 
-/// By how much the second pole of a mode that rings lies beside the first, over the record's length,
-/// and by how many times that the first moves at most in a step.
-/// Source: records of benchmarks/truth. 8 of a string that rings freely after a pluck, .05 to 5 % of
-/// noise, calibrated: 0.97 to 1.1 is left of the noise. 150 strokes of .06 to 1 s, .1 to 20 % of
+/// By how much the second pole of a mode that rings lies beside the first, over the record's
+/// length, and by how many times that the first moves at most in a step.
+/// Source: records of benchmarks/truth. 8 of a string that rings freely after a pluck, .05 to 5 %
+/// of noise, calibrated: 0.97 to 1.1 is left of the noise. 150 strokes of .06 to 1 s, .1 to 20 % of
 /// noise, plucks and blows among them: 2.6 and more, those of at most 10 % of noise 5.5 and more.
 /// Range tried: 0.1 alone; one step (which leaves 430 of a decay of .05 % of noise) and three.
 /// Doubled: not tried.
@@ -121,9 +121,10 @@ constexpr double kNearPole = 0.1;
 constexpr double kMostMoved = 20.0;
 
 /// What free decays leave over the noise up to which a string rings by itself.
-/// Source: the records as above. Range tried: 1.1 to 2.6.
+/// Source: the records as above.
+/// Range tried: 1.1 to 2.6.
 /// Doubled: four strokes of 20 % of noise are taken for decays.
-/// Halved: three decays of eight are found.
+/// Halved: four decays of eight are found.
 constexpr double kRingsByItself = 2.0;
 
 /// What is left over the noise from which on nothing rings by itself, and no pole needs to move.

@@ -42,6 +42,7 @@ class PreparedAuto final : public PreparedEstimator {
         samples_(model.samples),
         sample_rate_(model.sample_rate),
         recorded_(model.recorded),
+        bending_(model.bending),
         options_(options),
         observer_(observer) {}
 
@@ -60,6 +61,11 @@ class PreparedAuto final : public PreparedEstimator {
  private:
   Estimate chosen(const EstimationRecord& record) const {
     const auto& [left, right] = record.reactions;
+    if (bending_.value_or(false)) {
+      return joint_alone(joint_of(record),
+                         "the ends feel the bending of the string, and the observer of friction "
+                         "laws follows the tension alone");
+    }
     try {
       ModelBasedResult model =
           observer_.estimate(basis_, contact_, sample_rate_, left, right, {}, recorded_);
@@ -76,10 +82,13 @@ class PreparedAuto final : public PreparedEstimator {
                       "{:.2g} in the force)",
                       model.laws[0].law, model.steady_misfit, model.misfit_limit, share));
     } catch (const InvalidInput& refusal) {
-      const EstimationModel model{basis_, contact_, samples_, sample_rate_, recorded_};
-      return joint_alone(joint_estimate(model, record.reactions, options_.noise_rms),
-                         refusal.what());
+      return joint_alone(joint_of(record), refusal.what());
     }
+  }
+
+  Estimate joint_of(const EstimationRecord& record) const {
+    const EstimationModel model{basis_, contact_, samples_, sample_rate_, recorded_, bending_};
+    return joint_estimate(model, record.reactions, options_.noise_rms);
   }
 
   // A signal of the joint estimate, weighted by its noise alone: what else that is off by speaks
@@ -173,6 +182,7 @@ class PreparedAuto final : public PreparedEstimator {
   std::size_t samples_;
   double sample_rate_;
   bool recorded_;
+  std::optional<bool> bending_;
   ModelBasedOptions options_;
   ModelBasedEstimator observer_;
 };

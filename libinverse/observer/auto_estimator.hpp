@@ -20,6 +20,7 @@ class AutoEstimator final : public Estimator {
   /// Throws InvalidInput where no friction law or an unknown one is asked for.
   explicit AutoEstimator(const Options& options) : options_(options), observer_(options) {}
   double numbers_per_sample() const override { return 100.0; }
+  std::optional<bool> feels_bending() const override { return std::nullopt; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

@@ -14,8 +14,8 @@ using std::numbers::pi;
 
 enum class Remainder { kAuto, kLaw, kNone };
 constexpr std::array<std::string_view, 3> kRemainders = {"auto", "law", "none"};
-enum class Reaction { kTension, kSupport };
-constexpr std::array<std::string_view, 2> kReactions = {"tension", "support"};
+enum class Reaction { kTension, kSupport, kAuto };
+constexpr std::array<std::string_view, 3> kReactions = {"tension", "support", "auto"};
 
 ModalModel model_with(const ModalBasis& basis, std::vector<SensorKind> sensors) {
   ModalModel model{.sensors = std::move(sensors)};
@@ -86,16 +86,25 @@ void SupportOptions::visit(OptionVisitor& visitor) {
           "the modes above the highest stated one; law: they answer as the law of "
           "the string has them, none: there are none, auto: law for recorded data",
           {.choices = choices_of(kRemainders)}, remainder);
-  visitor("reaction",
-          "what the sensors at the ends feel; tension: T dy/dx, support: the "
-          "bending of a stiff string too, 1 + B n^2 times as much in mode n",
-          {.choices = choices_of(kReactions)}, reaction);
+  visitor(
+      "reaction",
+      "what the sensors at the ends feel; tension: T dy/dx, support: the "
+      "bending of a stiff string too, 1 + B n^2 times as much in mode n, auto: the tension, and "
+      "of a record the deviations hold both",
+      {.choices = choices_of(kReactions)}, reaction);
 }
 
 StringSupport SupportOptions::support(bool recorded) const {
   const auto wanted = enum_of<Remainder>(kRemainders, "remainder", remainder);
   return {.remainder = wanted == Remainder::kLaw || (wanted == Remainder::kAuto && recorded),
-          .bending = enum_of<Reaction>(kReactions, "reaction", reaction) == Reaction::kSupport};
+          .bending = bending().value_or(false),
+          .bending_open = recorded && !bending()};
+}
+
+std::optional<bool> SupportOptions::bending() const {
+  const auto stated = enum_of<Reaction>(kReactions, "reaction", reaction);
+  if (stated == Reaction::kAuto) return std::nullopt;
+  return stated == Reaction::kSupport;
 }
 
 std::vector<double> reaction_gains(const ModalBasis& basis, End end) {

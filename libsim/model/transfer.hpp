@@ -29,6 +29,7 @@ struct StringSupport {
   bool remainder = false;  ///< the modes above the highest stated one answer too
   /// The support feels T y_x − E I y_xxx instead of T y_x: g_rn times (1 + B n²).
   bool bending = false;
+  bool bending_open = false;  ///< nobody says whether it does
 };
 
 /// The same as an experiment states it.
@@ -36,10 +37,14 @@ struct SupportOptions {
   /// "law": modes above the highest stated one answer as the law has them; "none": they do not
   /// exist, as in a simulated string of that many modes; "auto": law for recorded data.
   std::string remainder = "auto";
-  std::string reaction = "tension";  ///< what the sensors feel: "tension" or "support"
+  /// What the sensors feel: "tension", "support", or "auto": the tension, of recorded data not
+  /// known.
+  std::string reaction = "auto";
   void visit(OptionVisitor& visitor);
   /// `recorded`: the data are no simulation.
   StringSupport support(bool recorded) const;
+  /// Whether they feel the bending, as far as it is stated.
+  std::optional<bool> bending() const;
 };
 
 /// end_reactions() and, third, a sensor of displacement at the contact: the receptance

@@ -43,14 +43,14 @@ void find_gaps(std::span<const double> t, double mean_step, double resolution, b
     if (!(coarse ? step >= 0.0 : step > 0.0)) {
       findings.push_back({i,
                           fmt::format("time goes from {:.9g} s to {:.9g} s; sampling instants "
-                                      "must increase: sort the rows by time, or crop the record",
+                                      "must increase: sort the rows of the file by time",
                                       t[i - 1], t[i]),
                           true});
     } else if (step > longest) {
       findings.push_back(
           {i,
-           fmt::format("a gap of {:.6g} s before {:.9g} s where the steps are {:.6g} s; crop "
-                       "the record before or behind the gap",
+           fmt::format("a gap of {:.6g} s before {:.9g} s where the steps are {:.6g} s; cut "
+                       "what is before or behind the gap out of the file",
                        step, t[i], nominal),
            true});
     }

@@ -82,7 +82,8 @@ std::vector<InversionResult> signals_of_models(
     ModelPoint& drawn = models[i - 1];
     drawn.basis.tension = outcome.refined.basis.tension;
     if (found.sensors.corner == 0.0) drawn.sensors.corner = 0.0;
-    invert(with_sensors_alike(measured, drawn.sensors), {std::move(drawn.basis), drawn.contact});
+    invert(with_sensors_alike(measured, drawn.sensors),
+           {std::move(drawn.basis), drawn.contact, outcome.refined.bending});
   };
   for_each_task(results.size(), invert_with, stop);
   return results;

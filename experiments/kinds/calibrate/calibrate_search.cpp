@@ -181,7 +181,8 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
   Problem problem = begin_calibration(options, strokes, plucks, outcome);
   outcome.result =
       calibrate(problem.model, std::move(problem.records), options.calibration, std::move(clock));
-  outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
+  outcome.refined = {outcome.result.model.basis, outcome.result.model.contact,
+                     options.calibration.support.bending()};
   if (observation.truth) {
     outcome.true_frequencies = frequencies_of(observation.basis);
   } else {

@@ -38,11 +38,11 @@ void require_agreement(const CalibrationOptions& calibration, const Estimator& e
                        bool recorded) {
   const std::string_view words[] = {"tension", "support"};
   const bool bending = calibration.support.support(recorded).bending;
-  MODCAL_REQUIRE(bending == estimator.feels_bending(),
+  MODCAL_REQUIRE(estimator.feels_bending().value_or(bending) == bending,
                  "the calibration takes the ends to feel the {}, the estimator the {}: state "
-                 "reaction: {} for both; estimators joint and linear_limit follow either, the "
-                 "others the tension alone",
-                 words[bending ? 1 : 0], words[bending ? 0 : 1], words[bending ? 1 : 0]);
+                 "calibration.reaction: {}, and for the estimator the same or nothing; estimators "
+                 "joint, auto and linear_limit follow either, the others the tension alone",
+                 words[bending ? 1 : 0], words[bending ? 0 : 1], words[bending ? 0 : 1]);
   const UnknownsOptions& unknowns = calibration.parameters.unknowns;
   const bool found = recorded && calibration.by_schedule() && !unknowns.exact_sensors;
   const bool corrected = found || unknowns.sensors().may_differ();

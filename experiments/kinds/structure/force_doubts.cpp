@@ -27,7 +27,8 @@ void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& l
       std::ranges::any_of(loaded.kinds, [](SensorKind kind) { return power_of_s(kind) == 0; });
   const bool are_blows = found.shape == ForceShape::kImpacts;
   if ((is_static && found.from_zero) || (are_blows && found.push_odds < 0.0)) return;
-  constexpr double kFromZero = 0.45;  // the bin at 0 Hz reaches up to 0.5/T
+  constexpr double kFromZero = 0.45;   // the bin at 0 Hz reaches up to 0.5/T
+  constexpr double kLowerBand = 0.25;  // two octaves more
   const std::string untold =
       is_static ? fmt::format("nothing is told of it below {:g} Hz, where the table begins", low)
                 : fmt::format("velocities and accelerations tell nothing of it below {:g} Hz", low);
@@ -43,9 +44,17 @@ void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& l
     const std::string why =
         is_push ? fmt::format(
                       "the force rises towards {:g} Hz, as one that pushes one way for long", low)
-                : "the band and the record are too short to tell whether the force pushes one way";
+                : "the band begins too high to tell whether the force pushes one way";
+    // A slow part shows at the lower end of the band: of blows, whose window is short, there; of a
+    // smooth force also where the record is long.
+    const std::string longer =
+        is_push || is_static ? ""
+        : are_blows
+            ? fmt::format(", or fit the modes from a lower frequency on (low: {:.2g} Hz or less)",
+                          kLowerBand * low)
+            : ", or record for longer";
     return reject(fmt::format("rejected: {}: {}, and its band does not hold that; {}{}{}", why,
-                              untold, remedy, is_push ? "" : ", or record for longer", or_stated),
+                              untold, remedy, longer, or_stated),
                   result);
   }
   const std::string_view doubt = is_push     ? "its spectrum is that of a push, not of blows: "

@@ -6,6 +6,7 @@
 #include "libsim/base/units.hpp"
 #include "libsim/base/utf8.hpp"
 #include "libsim/base/words.hpp"
+#include "libsim/records/csv/rows.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/tuning.hpp"
@@ -59,19 +60,18 @@ class CsvReader final : public CsvHandler {
   double to_seconds(Column& column) const;
   void use_time_axis(double stated);
   void compare_instants(double step);
-  void refuse_hidden_row(std::string_view text);
-  void report_ragged_row(std::size_t fields);
-  void report_sample(std::size_t index, NumberKind kind, std::string_view text);
+  void settle_first_row();
 
   CsvFile file_;
   const ReadOptions& options_;
   Recording record_;
-  std::vector<std::string> headings_;
+  std::vector<std::string> headings_, first_row_;
   std::vector<Column> columns_;
   std::vector<std::size_t> kept_;
   TimeColumns instants_;
   DecimalMark mark_;
   std::optional<std::size_t> time_;
+  bool in_first_row_ = true;
   std::size_t rows_ = 0, commented_rate_line_ = 0;
   double commented_rate_ = kNaN;
 };
@@ -86,22 +86,11 @@ void CsvReader::forget_samples() {
   for (RecordedChannel& channel : record_.channels) channel.samples.clear();
 }
 
-// A spreadsheet's #DIV/0! begins a row as "#" begins a comment: its sample would be lost.
-void CsvReader::refuse_hidden_row(std::string_view text) {
-  const std::size_t first = text.find(file_.separator());
-  const auto separators = std::count(text.begin(), text.end(), file_.separator());
-  if (first == std::string_view::npos || separators + 1 != std::ssize(columns_)) return;
-  const std::string_view second =
-      text.substr(first + 1, text.find(file_.separator(), first + 1) - first - 1);
-  if (DecimalMark().parse(second, file_.separator()).kind != NumberKind::kNumber) return;
-  record_.add_problem(
-      fmt::format("{}:{}:1: \"#{}\" begins a row of samples, which is left out as a comment; write "
-                  "its number, or crop the record before it",
-                  file_.name(), file_.line(), text.substr(0, first)));
-}
-
 void CsvReader::comment(std::string_view text) {
-  if (rows_ > 0) refuse_hidden_row(text);
+  if (rows_ > 0) {
+    std::string hidden = hidden_row_text(file_, text, columns_.size());
+    if (!hidden.empty()) record_.add_problem(std::move(hidden));
+  }
   const std::optional<double> rate = rate_in_comment(text, file_);
   if (!rate) return;
   MODCAL_REQUIRE(!(std::abs(*rate - commented_rate_) > 0.0),
@@ -116,9 +105,14 @@ void CsvReader::field(std::size_t index, std::string_view text) {
     headings_.push_back(utf8_or_latin1(text));
     return;
   }
+  if (in_first_row_) return first_row_.push_back(utf8_or_latin1(text));
   if (index >= columns_.size() || !columns_[index].read) return;
   const ParsedNumber number = mark_.parse(text, file_.separator());
-  if (number.kind != NumberKind::kNumber) report_sample(index, number.kind, text);
+  if (number.kind != NumberKind::kNumber) {
+    record_.add_problem(fmt::format("{}: sample {} of {}: {}", file_.place(index), rows_,
+                                    columns_[index].channel.name,
+                                    describe_bad_number(number.kind, text)));
+  }
   if (instants_.contains(index)) columns_[index].digits.add(text);
   columns_[index].channel.samples.push_back(number.value);
 }
@@ -128,29 +122,30 @@ void CsvReader::end_row(std::size_t fields) {
     settle_columns();
     return;
   }
+  if (in_first_row_) {
+    settle_first_row();
+    if (rows_ == 0 && first_row_.empty()) return;
+  }
   record_.lines.add(rows_, file_.line());
   options_.stop.throw_if_requested();
   ++rows_;
   if (fields == columns_.size()) return;
-  report_ragged_row(fields);
+  record_.add_problem(ragged_row_text(file_, fields, columns_.size()));
   for (std::size_t i = fields; i < columns_.size(); ++i) {
     if (columns_[i].read) columns_[i].channel.samples.push_back(kNaN);
   }
 }
 
-void CsvReader::report_sample(std::size_t index, NumberKind kind, std::string_view text) {
-  record_.add_problem(fmt::format("{}: sample {} of {}: {}", file_.place(index), rows_,
-                                  columns_[index].channel.name, describe_bad_number(kind, text)));
-}
-
-void CsvReader::report_ragged_row(std::size_t fields) {
-  const bool decimal_commas = file_.separator() == ',' && fields > columns_.size();
-  record_.add_problem(
-      fmt::format("{}:{}:1: the row has {} field{}, the header names {} column{}; {}", file_.name(),
-                  file_.line(), fields, fields == 1 ? "" : "s", columns_.size(),
-                  columns_.size() == 1 ? "" : "s",
-                  decimal_commas ? "if these are decimal commas, write decimal points"
-                                 : "give every row one number per column"));
+// Units below the names, or samples like all others.
+void CsvReader::settle_first_row() {
+  in_first_row_ = false;
+  const std::vector<std::string> units = units_of_row(first_row_);
+  for (std::size_t i = 0; i < first_row_.size() && units.empty(); ++i) field(i, first_row_[i]);
+  if (units.size() != columns_.size()) return;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (columns_[i].channel.unit.empty()) columns_[i].channel.unit = units[i];
+  }
+  first_row_.clear();
 }
 
 void CsvReader::settle_columns() {

@@ -10,6 +10,7 @@ namespace modcal::failures_test {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
@@ -45,12 +46,14 @@ TEST_F(Failures, OfASimulationSayWhyAndWhatToTry) {
 }
 
 TEST_F(Failures, OfTasksStandOnTheLastLines) {
-  const std::string last = "6 of 12 tasks failed:\n  6, 7, 8, 9, 10 … (6 tasks): " + kStops +
+  const std::string last = "6 of 12 tasks failed:\n  task 6, 7, 8, 9, 10 … (6 tasks): " + kStops +
                            "one of them again, with all that is drawn: modcal replay a 6\n";
   const Outcome run = modcal("run list.yaml --out a");
   EXPECT_EQ(run.code, 4);
   EXPECT_THAT(run.out, EndsWith("settings, see tasks.csv\n" + last));
   EXPECT_THAT(modcal("report a").out, EndsWith(last));
+  EXPECT_THAT(content_of(folder() / "a/report.html"),
+              AllOf(HasSubstr("6 of 12 tasks failed:"), HasSubstr("task 6, 7, 8, 9, 10")));
   EXPECT_EQ(modcal("replay a 6").code, 3);
   EXPECT_EQ(modcal("replay a 5").code, 0);
   const json answer = json::parse(modcal("report a --json").out);
@@ -59,13 +62,13 @@ TEST_F(Failures, OfTasksStandOnTheLastLines) {
   EXPECT_EQ(answer["failures"][0]["count"], 6);
   EXPECT_EQ(answer["failures"][0]["reason"].get<std::string>() + "\n", kStops);
   EXPECT_THAT(modcal("run list.yaml --out b --shard 2/2").out,
-              HasSubstr("3 of 12 tasks failed:\n  7, 9, 11: "));
+              HasSubstr("3 of 12 tasks failed:\n  task 7, 9, 11: "));
 }
 
 TEST_F(Failures, OfASweepAreSaidOnce) {
   const Outcome run = modcal("run sweep.yaml --out a");
   EXPECT_EQ(run.code, 4) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("1 of 2 tasks failed:\n  1: " + kStops));
+  EXPECT_THAT(run.out, HasSubstr("1 of 2 tasks failed:\n  task 1: " + kStops));
   const std::size_t first = run.out.find("tasks failed");
   EXPECT_EQ(run.out.find("tasks failed", first + 1), std::string::npos);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -135,12 +136,13 @@ inline double middle_error(std::span<const double> x, std::span<const double> y)
 }
 
 inline Estimate estimate_with(const JointOptions& joint, const ModalBasis& basis,
-                              const ReactionPair& reactions, bool recorded = false) {
+                              const ReactionPair& reactions, bool recorded = false,
+                              std::optional<bool> bending = {}) {
   const std::size_t samples = std::max(reactions[0].size(), reactions[1].size());
   JointEstimator::Options options;
   options.joint = joint;
   const auto prepared =
-      JointEstimator(options).prepare({basis, kPosition, samples, kRate, recorded});
+      JointEstimator(options).prepare({basis, kPosition, samples, kRate, recorded, bending});
   const auto regularizer = Choice<Regularizer>("none").make();
   const auto rule = Choice<ParameterChoice>("gcv").make();
   EstimationRecord record;

@@ -56,6 +56,19 @@ std::string replaced(std::string_view text, std::string_view from, std::string_v
 
 TEST_F(CsvReader, ReadsNamedColumnsWithUnits) { expect_plain(read(kPlain)); }
 
+// As many loggers write them; a heading's own unit is the more particular one.
+TEST_F(CsvReader, ReadsUnitsBelowTheNames) {
+  expect_plain(read("t,R1,R2\ns,N,mN\n0,1,-4\n0.5,2.5,5e-1\n1,+3,6\n"));
+  expect_plain(read("t;R1;R2 (mN)\n[ms];(N);\n0;1;-4\n500;2.5;5e-1\n1000;+3;6\n"));
+  const Recording numbers = read("t,R1,R2\n0,1,2\n1,3,4\n");
+  EXPECT_EQ(numbers.channels[0].unit, "");
+  EXPECT_THAT(numbers.channels[0].samples, ElementsAre(1.0, 3.0));
+  // Neither a word nor what is no number is a unit.
+  EXPECT_THAT(error("t,R1,R2\nseconds?,N,N\n0,1,2\n1,3,4\n"), HasSubstr("r.csv:2:1: sample 0"));
+  EXPECT_THAT(error("t,R1,R2\n0,nan,inf\n1,3,4\n"), HasSubstr("\"nan\" is no usable sample"));
+  EXPECT_THAT(error("t,R1,R2\ns,N\n0,1,2\n1,3,4\n"), HasSubstr("the row has 2 fields"));
+}
+
 TEST_F(CsvReader, DetectsSeparators) {
   expect_plain(read(replaced(kPlain, ",", ";")));
   expect_plain(read(replaced(kPlain, ",", "\t")));
@@ -152,17 +165,17 @@ TEST_F(CsvReader, ReportsInstantsPrintedTooCoarsely) {
 
 TEST_F(CsvReader, ReportsGapsJitterAndReturnsInTime) {
   EXPECT_EQ(error("t,R1\n0,1\n0.1,1\n# pause\n0.4,1\n0.5,1\n0.6,1\n"),
-            "r.csv:5: sample 2: a gap of 0.3 s before 0.4 s where the steps are 0.1 s; crop the "
-            "record before or behind the gap");
+            "r.csv:5: sample 2: a gap of 0.3 s before 0.4 s where the steps are 0.1 s; cut "
+            "what is before or behind the gap out of the file");
   EXPECT_EQ(error("t,R1\n0,1\n0.10000,1\n0.21000,1\n0.3,1\n0.4,1\n"),
             "r.csv:4: sample 2: sampling is not uniform: 0.21 s is 0.01 s (0.1 sampling periods) "
             "off the uniform grid; resample the record, or state sample_rate if its time column is "
             "not to be trusted");
   EXPECT_EQ(error("t,R1\n0,1\n0.10,1\n0.20,1\n0.20,1\n0.45,1\n"),
             "r.csv:5: sample 3: time goes from 0.2 s to 0.2 s; sampling instants must increase: "
-            "sort the rows by time, or crop the record\n"
-            "r.csv:6: sample 4: a gap of 0.25 s before 0.45 s where the steps are 0.1 s; crop the "
-            "record before or behind the gap");
+            "sort the rows of the file by time\n"
+            "r.csv:6: sample 4: a gap of 0.25 s before 0.45 s where the steps are 0.1 s; cut "
+            "what is before or behind the gap out of the file");
   const std::string_view gap = "t,R1\n0,1\n0.1,1\n0.4,1\n0.5,1\n0.6,1\n";
   EXPECT_EQ(read(gap, {.sample_rate = 10.0}).warnings.size(), 2u);  // the gap, and 5 / 0.6 s ≠ 10
   EXPECT_EQ(read(gap, {.sample_rate = 10.0}).contradictions.size(), 2u);
@@ -228,10 +241,10 @@ TEST_F(CsvReader, ReportsFieldsThatAreNoNumbers) {
             "r.csv:2:3: sample 0 of R1: the field is empty; every row needs a number in every "
             "column");
   EXPECT_EQ(error("t,R1\n0,1\n1,nan\n2,-inf\n"),
-            "r.csv:3:3: sample 1 of R1: \"nan\" is no usable sample; repair the record or crop it "
-            "away\n"
-            "r.csv:4:3: sample 2 of R1: \"-inf\" is no usable sample; repair the record or crop it "
-            "away");
+            "r.csv:3:3: sample 1 of R1: \"nan\" is no usable sample; repair the record or delete "
+            "its row\n"
+            "r.csv:4:3: sample 2 of R1: \"-inf\" is no usable sample; repair the record or delete "
+            "its row");
   EXPECT_EQ(error("t,R1\n0,1e400\n1,1e-400\n"),
             "r.csv:2:3: sample 0 of R1: \"1e400\" is outside the range of double precision "
             "(4.9e-324 … 1.8e308)\n"
