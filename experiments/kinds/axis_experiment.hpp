@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <typeinfo>
 
@@ -69,6 +70,8 @@ class AxisList final : public SweepSlot {
   }
   /// The options of all cells, those that differ in their seed alone once.
   const std::vector<Options>& all() const { return settings_; }
+  /// Place of a cell's options in all().
+  std::size_t settings_of(std::size_t cell) const { return cells_[cell].settings; }
 
  private:
   struct Cell {
@@ -176,13 +179,26 @@ class AxisExperiment : public TaskExperiment {
     }
     return findings_of_list(findings);
   }
+  /// Of every file, and of the first few parts of a file that axes make of it.
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const override {
+    constexpr std::size_t kMostParts = 12;
     std::vector<Finding> findings;
-    std::set<std::vector<std::string>> read;
-    for (const Cell& cell : options_.cells.all()) {
-      std::vector<std::string> names;
+    std::map<std::vector<std::string>, std::set<std::vector<std::string>>> read;
+    const std::vector<std::string>& paths = options_.cells.paths();
+    std::set<std::size_t> settings;
+    for (std::size_t task = 0; task < options_.cells.size(); ++task) {
+      if (!settings.insert(options_.cells.settings_of(task)).second) continue;
+      const Cell& cell = options_.cells.all()[options_.cells.settings_of(task)];
+      const std::vector<std::string> values = options_.cells.values(task);
+      std::vector<std::string> names, part;
       for (const FileRead& file : files_read_by(cell)) names.push_back(file.name);
-      if (read.insert(names).second) append(findings, record_findings(cell, folder));
+      for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (paths[i].starts_with("record.")) part.push_back(values[i]);
+      }
+      std::set<std::vector<std::string>>& parts = read[names];
+      if (parts.size() < kMostParts && parts.insert(part).second) {
+        append(findings, record_findings(cell, folder));
+      }
     }
     return distinct_findings(std::move(findings));
   }

@@ -197,6 +197,21 @@ std::string_view remedy_of_prior(std::string_view farthest) {
   return "";
 }
 
+// A channel later than what is looked for. Its delay is on the bound then, and what is stated in
+// the record is taken out beforehand.
+std::string late_channel(const CalibrationResult& result) {
+  for (const CalibratedParameter& one : result.parameters) {
+    if (one.name != sensor_type(Sensor::kDelay).name || !one.at_bound) continue;
+    return fmt::format(
+        "the channel at {} is later by {:.3g} us or more, on the bound of what is looked for: "
+        "state "
+        "record.{}.delay: {:.3g} us more than now and run again",
+        one.final > 0.0 ? "x = L" : "x = 0", 1e6 * std::abs(one.final),
+        one.final > 0.0 ? "right" : "left", 1e6 * std::abs(one.final));
+  }
+  return {};
+}
+
 // Waves that grow from sample to sample are those of a decay read from its end: the fit takes all
 // damping that it may from most of the modes.
 bool runs_backwards(const CalibrationResult& result) {
@@ -228,6 +243,11 @@ std::string contradiction(const CalibrationResult& result) {
         "most damping ratios end at their lowest, as where the string gains energy: the rows stand "
         "in reverse (turn them around), or the damping stated is many times too large "
         "(string.damping)");
+    return fmt::format("{}", fmt::join(reasons, "; "));
+  }
+  const std::string late = found.fits ? std::string() : late_channel(result);
+  if (!late.empty()) {
+    reasons.push_back(late);
     return fmt::format("{}", fmt::join(reasons, "; "));
   }
   if (found.priors.contradicted()) {

@@ -205,6 +205,19 @@ TEST_F(CalibrateLines, RefuseARecordThatTellsNoMode) {
   EXPECT_THAT(noisy.summary, testing::HasSubstr("of its modes, too few for a string"));
 }
 
+// The second part of the file ends behind it.
+TEST_F(CalibrateLines, OfAListAreCheckedPartByPart) {
+  write("stroke.csv", lines_of_force({}));
+  const LoadedExperiment loaded = load_experiment(parse_yaml(
+      "kind: calibrate\nrecord: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}}\n"
+      "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196.5 Hz}\n"
+      "bow: {position: 30 mm}\nsweep: {product: {record.stop: [0.4 s, 2 s], seed: [1, 2]}}\n",
+      (folder() / "experiment.yaml").string()));
+  const std::vector<Finding> findings = loaded.experiment->lint_records(folder());
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].text, testing::HasSubstr("stop = 2 s is not in the record"));
+}
+
 // One would count twice.
 TEST_F(CalibrateRecords, RefuseACopyOfAStroke) {
   const Observation observed = stroke(simulated(0.1, 51200.0));

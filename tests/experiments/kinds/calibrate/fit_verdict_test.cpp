@@ -53,6 +53,17 @@ TEST(FitVerdict, TellsARecordThatRunsBackwards) {
   EXPECT_THAT(contradiction(result), Not(HasSubstr("in reverse")));
 }
 
+TEST(FitVerdict, NamesAChannelThatIsLaterThanIsLookedFor) {
+  CalibrationResult result = with(result_of(false, {}));
+  result.parameters.push_back({.name = "delay", .final = 5e-5, .at_bound = true});
+  EXPECT_THAT(contradiction(result),
+              AllOf(HasSubstr("x = L is later by 50 us or more"), HasSubstr("record.right.delay")));
+  result.parameters[0].final = -5e-5;
+  EXPECT_THAT(contradiction(result), HasSubstr("record.left.delay: 50 us more"));
+  result.parameters[0].at_bound = false;
+  EXPECT_THAT(contradiction(result), Not(HasSubstr("is later")));
+}
+
 TEST(CalibrationWarnings, RefuseWhatHasNoDeviation) {
   CalibrationOutcome outcome;
   ContinuationResult found = result_of(true, {});
