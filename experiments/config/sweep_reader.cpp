@@ -93,6 +93,23 @@ class Reader {
     return member.value.items;
   }
 
+  // Keys below one another are a path; keys of single values are the ends of a range.
+  static std::string why_no_axis(const YamlNode::Member& member) {
+    std::string path = member.key;
+    const YamlNode* node = &member.value;
+    while (node->kind == YamlNode::Kind::kMap && !node->members.empty()) {
+      const YamlNode::Member& inner = node->members.front();
+      if (inner.value.kind == YamlNode::Kind::kScalar) {
+        return fmt::format("an axis has no range, but a list of its values: write {}: [..., ...]",
+                           path);
+      }
+      path += "." + inner.key;
+      node = &inner.value;
+    }
+    if (node == &member.value) return path + " needs a list of values, at least one";
+    return fmt::format("an axis is one path with dots and its values: write {}: [...]", path);
+  }
+
   Group read_axes(const YamlNode& map) {
     Group axes;
     if (map.kind != YamlNode::Kind::kMap || map.members.empty()) {
@@ -109,13 +126,7 @@ class Reader {
         axes.push_back(&member);
         continue;
       }
-      const bool nested =
-          member.value.kind == YamlNode::Kind::kMap && !member.value.members.empty();
-      mistake(member.value.position,
-              nested
-                  ? fmt::format("an axis is one path with dots and its values: write {}.{}: [...]",
-                                member.key, member.value.members.front().key)
-                  : fmt::format("{} needs a list of values, at least one", member.key));
+      mistake(member.value.position, why_no_axis(member));
     }
     return axes;
   }

@@ -211,8 +211,28 @@ std::string explain(const std::string& message) {
   return "not YAML: " + message;
 }
 
+// Text that goes on behind a quoted one: of an apostrophe between quotes, or of a quote that was
+// left open before.
+std::optional<Mistake> text_behind_quotes(const YAML::ParserException& error,
+                                          const std::string& text) {
+  const bool is_indentation =
+      error.msg == YAML::ErrorMsg::END_OF_MAP || error.msg == YAML::ErrorMsg::END_OF_SEQ;
+  const std::size_t at = error.mark.is_null() ? 0 : static_cast<std::size_t>(error.mark.pos);
+  if (!is_indentation || at == 0 || at >= text.size()) return std::nullopt;
+  const char quote = text[at - 1];
+  if (quote != '"' && quote != '\'') return std::nullopt;
+  return Mistake{
+      position_of(error.mark),
+      quote == '"'
+          ? "a text in quotes ends before this: write \" within it as \\\", or close the "
+            "quote that was left open in a line above"
+          : "a text in quotes ends before this: write ' within it twice (''), or put the "
+            "text between \" and \"; or close the quote that was left open in a line above"};
+}
+
 Mistake syntax_mistake(const YAML::ParserException& error, const TreeBuilder& builder,
                        const std::string& text) {
+  if (auto behind = text_behind_quotes(error, text)) return *std::move(behind);
   const YamlNode* inner = builder.innermost();
   if (error.msg == YAML::ErrorMsg::MAP_VALUE && !error.mark.is_null()) {
     if (auto above = mistake_above(text, position_of(error.mark).line)) return *std::move(above);

@@ -179,7 +179,7 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   result.add(report::tables_of(outcome));
   result.blocks.emplace_back(stabilization_figure(outcome));
   result.files.emplace_back("identification.json", report::json_file(report::json_of(outcome)));
-  result.summary = sentence_of(outcome);
+  result.summary = sentence_of(outcome, identification.highest_frequency);
   result.answer_by_summary();
   if (outcome.found.modes.empty() || !outcome.found.converged) {
     result.status = report::Status::kFailed;

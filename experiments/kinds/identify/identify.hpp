@@ -62,7 +62,7 @@ struct IdentifyOutcome {
 std::optional<StiffStringFit> law_of(const PluckIdentification& found);
 
 /// How many modes, the law, the mains.
-std::string sentence_of(const IdentifyOutcome& outcome);
+std::string sentence_of(const IdentifyOutcome& outcome, double highest_frequency);
 
 /// Frequencies against the truth, or of a record against the law through all of them.
 report::Figure errors_figure(const IdentifyOutcome& outcome);

@@ -46,8 +46,11 @@ report::Figure errors_figure(const IdentifyOutcome& outcome) {
                       .markers = {{.direction = report::Marker::Direction::kHorizontal}}}}};
 }
 
-std::string sentence_of(const IdentifyOutcome& outcome) {
+std::string sentence_of(const IdentifyOutcome& outcome, double highest_frequency) {
   std::string text = fmt::format("{} modes identified", outcome.found.modes.size());
+  if (outcome.record) {
+    text += fmt::format(" up to {:g} Hz (identification.highest_frequency)", highest_frequency);
+  }
   if (!outcome.found.missing.empty()) {
     text += fmt::format(", {} missing below the highest", outcome.found.missing.size());
   }
