@@ -97,8 +97,8 @@ std::string chi2_text(const ContinuationResult& found) {
   std::string text = fmt::format(
       "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2, found.chi2_deviation,
       found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
-      found.law_holds()                 ? "accepted"
-      : found.law.priors.contradicted() ? "contradicted by the priors"
+      found.law_holds()                 ? "all modes follow it"
+      : found.law.priors.contradicted() ? "its sensors contradict the priors"
                                         : "some modes leave it");
   text += noise_text(found.noise_spectrum);
   if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
