@@ -198,10 +198,11 @@ std::string text_for(const NewArguments& arguments, const ToldString& told,
 }
 
 std::string file_for_record(const NewArguments& arguments) {
-  MODCAL_REQUIRE(arguments.kind == "invert" || arguments.kind == "calibrate",
-                 "a record is read by the kinds invert and calibrate, not by {}: leave the record "
-                 "out, or name one of these",
-                 arguments.kind);
+  MODCAL_REQUIRE(
+      arguments.kind == "invert" || arguments.kind == "calibrate",
+      "a record is read by the kinds invert and calibrate, not by {}: leave the record "
+      "out, or name one of these; of a structure `modcal inspect {}` prints what to write",
+      arguments.kind, shell_word(arguments.record));
   const InspectionReport report =
       inspect(arguments.record, {.sample_rate = arguments.sample_rate, .memory = machine_memory()});
   MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());

@@ -99,8 +99,10 @@ std::string OutputDirectory::foreign_among(const std::vector<std::string>& names
   return foreign == names.end() ? std::string() : *foreign;
 }
 
-bool OutputDirectory::holds(const std::string& name, std::string_view content) const {
-  return is_regular(path_ / name) && content_of_file(path_ / name) == content;
+bool OutputDirectory::holds_resolved(std::string_view settings) const {
+  if (!is_regular(path_ / kResolvedFile)) return false;
+  const std::string content = content_of_file(path_ / kResolvedFile);
+  return content.substr(content.find('\n') + 1) == settings;  // npos + 1 is 0
 }
 
 void OutputDirectory::write_provenance(nlohmann::ordered_json provenance) {

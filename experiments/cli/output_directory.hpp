@@ -28,8 +28,8 @@ class OutputDirectory {
   const std::filesystem::path& path() const { return path_; }
   /// The first of the names that a file has which no run wrote; empty: none.
   std::string foreign_among(const std::vector<std::string>& names) const;
-  /// Whether a file of this name and content stands here.
-  bool holds(const std::string& name, std::string_view content) const;
+  /// Whether resolved.yaml, but for its first line, is this text.
+  bool holds_resolved(std::string_view settings) const;
   /// Whether what runs have written here is said to come from somewhere.
   bool has_provenance() const { return !provenance_.empty(); }
   /// program_identity() of the run that wrote here last; empty: not known.

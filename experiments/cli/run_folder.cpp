@@ -16,7 +16,7 @@ namespace modcal {
 namespace {
 
 constexpr std::string_view kResolvedWords =
-    " with every default written out. Relative paths start in ";
+    " with every default written out. Relative paths start ";
 
 nlohmann::json read_provenance(const std::filesystem::path& out) {
   const std::filesystem::path file = out / kProvenanceFile;
@@ -100,9 +100,9 @@ void collect_swept_seeds(const YamlNode& root, nlohmann::ordered_json& seeds) {
 }  // namespace
 
 std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem::path& folder) {
-  return fmt::format("# {}{}{}: copy it there to run it.\n{}", loaded.document.file, kResolvedWords,
-                     std::filesystem::absolute(folder / "").lexically_normal().string(),
-                     loaded.resolved());
+  return fmt::format(
+      "# {}{}in {}: copy it there to run it.\n{}", loaded.document.file, kResolvedWords,
+      std::filesystem::absolute(folder / "").lexically_normal().string(), loaded.resolved());
 }
 
 bool is_resolved_text(std::string_view text) {

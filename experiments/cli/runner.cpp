@@ -64,15 +64,13 @@ std::vector<std::string> names_of_list(const TaskExperiment& list,
 }
 
 // Whether what stands in the folder is of these settings and this program.
-bool is_same_run(const LoadedExperiment& loaded, const RunSettings& settings,
-                 const OutputDirectory& out) {
-  return out.program() == program_identity() &&
-         out.holds(kResolvedFile, resolved_text(loaded, folder_of(loaded, settings)));
+bool is_same_run(const LoadedExperiment& loaded, const OutputDirectory& out) {
+  return out.program() == program_identity() && out.holds_resolved(loaded.resolved());
 }
 
 // Settings whose results do not stand yet.
 void begin_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out) {
-  if (!is_same_run(loaded, settings, out)) out.make_way();
+  if (!is_same_run(loaded, out)) out.make_way();
   record_run(loaded, settings, out);
 }
 
@@ -171,7 +169,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   const FolderLock working(out.path(), settings.shard);
   SharedWork work(interrupt_token());
   Beside beside;
-  beside.database = list != nullptr && is_same_run(loaded, settings, out);
+  beside.database = list != nullptr && is_same_run(loaded, out);
   // The journal of a list needs its settings at once. Other results keep theirs until they are
   // replaced.
   beside.settings = list != nullptr || !std::filesystem::exists(out.path() / report::kPageFile);

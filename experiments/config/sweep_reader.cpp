@@ -93,13 +93,15 @@ class Reader {
     return member.value.items;
   }
 
-  // Keys below one another are a path; keys of single values are the ends of a range.
+  // Keys below one another are a path; some words are those of a range.
+  static constexpr std::string_view kRangeWords[] = {"from", "to",   "start", "stop", "min",
+                                                     "max",  "step", "steps", "num",  "by"};
   static std::string why_no_axis(const YamlNode::Member& member) {
     std::string path = member.key;
     const YamlNode* node = &member.value;
     while (node->kind == YamlNode::Kind::kMap && !node->members.empty()) {
       const YamlNode::Member& inner = node->members.front();
-      if (inner.value.kind == YamlNode::Kind::kScalar) {
+      if (std::ranges::count(kRangeWords, inner.key) > 0) {
         return fmt::format("an axis has no range, but a list of its values: write {}: [..., ...]",
                            path);
       }

@@ -46,7 +46,8 @@ void add_numbers(const report::Table& table, RunOutcome& outcome) {
 
 void RunOutcome::visit(ResultVisitor& visitor) {
   visitor({.key = "failure", .optional = true}, failure);
-  if (failure.empty()) visitor({.key = "numbers"}, numbers);
+  if (!failure.empty()) return;
+  visitor({.key = "numbers"}, numbers);
   visitor({.key = "units", .optional = true}, units);
 }
 

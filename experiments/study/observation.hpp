@@ -2,6 +2,8 @@
 // computed once per distinct scene and shared by a whole sweep, and the model it starts from.
 #pragma once
 
+#include <optional>
+
 #include "experiments/study/fingerprint.hpp"
 #include "libinverse/waves/end_relation.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"

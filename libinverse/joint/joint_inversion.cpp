@@ -42,10 +42,14 @@ void keep_what_sampling_shows(std::size_t samples, std::vector<Complex>& transfe
 }
 
 StringTransfer bent_transfer(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
-                             const JointModel& model) {
+                             std::size_t samples, const JointModel& model) {
   StringSupport support = model.support;
   support.bending = true;
-  return string_transfer(basis, contact, grid, support, model.sensors);
+  StringTransfer transfer = string_transfer(basis, contact, grid, support, model.sensors);
+  for (std::vector<Complex>& reaction : transfer.reaction) {
+    keep_what_sampling_shows(samples, reaction);
+  }
+  return transfer;
 }
 
 // With H for H', that of ends that feel the bending, F is found Σ conj(H_r) H'_r/Σ |H_r|² times as
@@ -113,7 +117,7 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
     }
   }
   if (model.support.bending_open && inharmonicity_of(basis) > 0.0) {
-    bending_share_ = bending_shares(transfer_, bent_transfer(basis, contact, grid, model));
+    bending_share_ = bending_shares(transfer_, bent_transfer(basis, contact, grid, samples, model));
   }
   if (basis.size() > 0) {
     fundamental_ = basis.frequency(0);

@@ -106,6 +106,8 @@ class TransientFit {
   std::vector<RingingMode> moving(bool velocity) const;
   TransientFit with_near_poles(double step) const;
   void move_poles(double step, const Workspace& workspace);
+  double ringing_step(const Setting& setting, std::size_t side, std::span<const Complex> spectrum,
+                      std::size_t bins, Workspace& workspace);
   template <typename Take>
   void add_up(std::span<const RingingMode> modes, std::size_t first, Take take) const;
   Complex reading(std::size_t side, std::size_t k) const;

@@ -68,7 +68,7 @@ class PreparedAuto final : public PreparedEstimator {
     }
     try {
       ModelBasedResult model =
-          observer_.estimate(basis_, contact_, sample_rate_, left, right, {}, recorded_);
+          observer_.estimate(basis_, contact_, sample_rate_, left, right, {}, recorded_, bending_);
       const Reference joint = held(model, model.joint.result.force, model.joint.force_variance,
                                    model.joint.force_excess);
       const std::vector<double> errors = errors_of(model.unaliased_force, joint, model);

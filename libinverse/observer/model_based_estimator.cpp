@@ -224,10 +224,10 @@ ModelBasedEstimator::ModelBasedEstimator(ModelBasedOptions options) : options_(s
 ModelBasedResult ModelBasedEstimator::estimate(const ModalBasis& basis, double contact,
                                                double sample_rate, std::span<const double> left,
                                                std::span<const double> right, const StopToken& stop,
-                                               bool recorded) const {
+                                               bool recorded, std::optional<bool> bending) const {
   ObservedRecord record =
       observe_record(basis, contact, sample_rate, left, right, options_.noise_rms);
-  Estimate joint = joint_estimate({basis, contact, left.size(), sample_rate, recorded},
+  Estimate joint = joint_estimate({basis, contact, left.size(), sample_rate, recorded, bending},
                                   {left, right}, options_.noise_rms);
   if (recorded) take_noise(joint, options_.noise_rms, record);
   return Estimation(options_, std::move(record), std::move(joint), stop).run();

@@ -85,7 +85,8 @@ class ModelBasedEstimator final : public Estimator {
   /// require_no_ringing()), and Interrupted where `stop` was requested.
   ModelBasedResult estimate(const ModalBasis& basis, double contact, double sample_rate,
                             std::span<const double> left, std::span<const double> right,
-                            const StopToken& stop = {}, bool recorded = false) const;
+                            const StopToken& stop = {}, bool recorded = false,
+                            std::optional<bool> bending = {}) const;
   double numbers_per_sample() const override { return 100.0; }
 
  private:

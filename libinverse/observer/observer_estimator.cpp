@@ -14,6 +14,7 @@ class PreparedObserverEstimate final : public PreparedEstimator {
         sample_rate_(model.sample_rate),
         samples_(model.samples),
         recorded_(model.recorded),
+        bending_(model.bending),
         estimator_(estimator) {}
 
   std::vector<Estimate> estimate(const EstimationRecord& record,
@@ -24,8 +25,9 @@ class PreparedObserverEstimate final : public PreparedEstimator {
                      "samples each; use estimator joint where one is missing",
                      r == 0 ? "x = 0" : "x = L", record.reactions[r].size(), samples_);
     }
-    ModelBasedResult result = estimator_.estimate(
-        basis_, contact_, sample_rate_, record.reactions[0], record.reactions[1], {}, recorded_);
+    ModelBasedResult result =
+        estimator_.estimate(basis_, contact_, sample_rate_, record.reactions[0],
+                            record.reactions[1], {}, recorded_, bending_);
     Estimate estimate;
     estimate.side = "model";
     estimate.label = "model-based";
@@ -56,6 +58,7 @@ class PreparedObserverEstimate final : public PreparedEstimator {
   double contact_, sample_rate_;
   std::size_t samples_;
   bool recorded_;
+  std::optional<bool> bending_;
   ModelBasedEstimator estimator_;
 };
 

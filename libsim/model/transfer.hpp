@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <string>
 
 #include "libsim/model/modal_basis.hpp"
 #include "libsim/model/modal_model.hpp"

@@ -89,9 +89,8 @@ void Recording::check_finite(std::string_view file) {
   for (const RecordedChannel& channel : channels) {
     for (std::size_t i = 0; i < channel.samples.size(); ++i) {
       if (std::isfinite(channel.samples[i])) continue;
-      add_problem(fmt::format(
-          "{}: sample {} of channel {} is {}; repair the record or cut it out", file, i,
-          channel.name, channel.samples[i]));
+      add_problem(fmt::format("{}: sample {} of channel {} is {}; repair the record or cut it out",
+                              file, i, channel.name, channel.samples[i]));
     }
   }
 }

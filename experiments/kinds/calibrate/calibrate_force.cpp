@@ -94,10 +94,11 @@ double ringing_misfit(const CalibrateOptions& options, const Observation& observ
                       const CalibrationOutcome& outcome) {
   const auto& found = outcome.result.continuation;
   if (!found || !found->right || observation.truth) return CalibratedForce{}.ringing_misfit;
-  const JointInversion inversion(
-      outcome.refined.basis, outcome.refined.contact, observation.samples(),
-      observation.sample_rate,
-      {.truncation = Truncation::kTransient, .support = options.calibration.support.support(true)});
+  StringSupport support = options.calibration.support.support(true);
+  support.bending_open = false;  // a decay is one either way
+  const JointInversion inversion(outcome.refined.basis, outcome.refined.contact,
+                                 observation.samples(), observation.sample_rate,
+                                 {.truncation = Truncation::kTransient, .support = support});
   JointWorkspace workspace;
   return inversion.ringing_misfit(
       {observation.reactions[0]->samples, observation.reactions[1]->samples}, {.rms = found->noise},

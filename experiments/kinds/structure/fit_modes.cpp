@@ -12,31 +12,6 @@
 #include "libsim/records/universal/universal_modes.hpp"
 
 namespace modcal {
-namespace {
-
-std::string sentence_of(const StrikeFit& fit, const FitModesOptions& options) {
-  const auto [least, most] = std::ranges::minmax(fit.residuals);
-  const auto& poles = fit.table.model.poles;
-  const auto inside = static_cast<std::size_t>(std::ranges::count_if(poles, [&](const ModalPole& pole) {
-    const double frequency = pole.omega / (2.0 * std::numbers::pi);
-    return frequency >= options.low && frequency <= options.high;
-  }));
-  std::string text = fmt::format("{} modes", poles.size());
-  if (inside < poles.size()) text += fmt::format(", {} of them", inside);
-  text += fmt::format(
-      " between {:g} and {:g} Hz; the model leaves {:.2g} to {:.2g} % of the responses\n",
-      options.low, options.high, 100.0 * least, 100.0 * most);
-  if (fit.strikes.size() > 1) {
-    text += fmt::format(
-        "from {} to {} frequencies differ by {:.2g} %, damping ratios by {:.2g} % (medians of "
-        "{})\n",
-        options.has_functions ? "session" : "strike", options.has_functions ? "session" : "strike",
-        100.0 * fit.frequency_scatter, 100.0 * fit.damping_scatter, fit.strikes.size());
-  }
-  return text;
-}
-
-}  // namespace
 
 FileRead file_read(const StructureRecordOptions& record) {
   return {.name = record.file,

@@ -122,16 +122,37 @@ void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loa
          result);
 }
 
+// Σf⁴ n/(Σf²)²: 3 of a Gaussian force, the inverse of the share of time in which one of blows acts.
+double peakedness(std::span<const double> force) {
+  double square = 0.0, fourth = 0.0;
+  for (const double f : force) {
+    square += f * f;
+    fourth += f * f * f * f;
+  }
+  return square > 0.0 ? fourth * static_cast<double>(force.size()) / (square * square) : 0.0;
+}
+
 // What was not tried, and what table and record do not tell.
 void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loaded,
                    const StructureTable& modes, StudyResult& result) {
   if (found.told < 1.0) {
     reject(
         "rejected: the responses tell no force: they are no larger than the noise of the table's "
-        "record; either none acted, or units and gains of the channels are not those of the table",
+        "record; either none acted, or one below the table's band (low), or units and gains of the "
+        "channels are not those of the table",
         result);
   }
-  if (found.untried > 0.0) {
+  if (found.untried > 0.0 && peakedness(found.force) > kPeaked) {
+    const double part = found.window * kMostInstants / found.untried;
+    reject(
+        fmt::format(
+            "rejected: the force stands in peaks, as one of blows, whose height a smooth force "
+            "does not tell: its window of {:.3g} s holds {:g} instants of a pulse, {:g} are "
+            "possible; take the blows in parts: window: {:.2g} s, and for the next ones the same "
+            "with record.start at a quiet instant behind it",
+            found.window, found.untried, kMostInstants, 0.9 * part),
+        result);
+  } else if (found.untried > 0.0) {
     result.warn(fmt::format(
         "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
         "possible; where the force is one of impacts, state a shorter window",

@@ -202,4 +202,18 @@ report::Figure force_figure(const LoadedStructureRecord& loaded, const Structure
   return figure;
 }
 
+std::size_t told_peak(const StructureForce& found) {
+  const bool is_smooth = found.shape == ForceShape::kSmooth;
+  const double most =
+      is_smooth ? 3.0 * quantile(found.deviation, 0.5) : std::numeric_limits<double>::infinity();
+  std::size_t peak = 0;
+  double largest = -1.0;
+  for (std::size_t j = 0; j < found.force.size(); ++j) {
+    if (!(std::abs(found.force[j]) > largest) || found.deviation[j] > most) continue;
+    largest = std::abs(found.force[j]);
+    peak = j;
+  }
+  return peak;
+}
+
 }  // namespace modcal

@@ -48,4 +48,8 @@ struct PlacesOutcome {
 
 report::Figure force_figure(const LoadedStructureRecord& loaded, const StructureForce& found);
 
+/// Index of the largest force where it is known as well as elsewhere: what a smooth one is at the
+/// ends of the record is hardly told.
+std::size_t told_peak(const StructureForce& found);
+
 }  // namespace modcal

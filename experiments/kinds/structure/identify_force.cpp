@@ -13,14 +13,12 @@ namespace modcal {
 namespace {
 
 std::string sentence_of(const StructureForce& found, const LoadedStructureRecord& loaded) {
-  const auto peak =
-      std::ranges::max_element(found.force, {}, [](double force) { return std::abs(force); });
-  const auto at = static_cast<std::size_t>(peak - found.force.begin());
+  const std::size_t at = told_peak(found);
   const StructureRecord& record = loaded.record;
   return fmt::format(
       "{} from {} sensors: at most {:.4g} +- {:.2g} N (95 %), at {:.4g} s{}{}\n",
       found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", loaded.kinds.size(),
-      *peak, 1.959964 * found.deviation[at], static_cast<double>(at) / record.sample_rate,
+      found.force[at], 1.959964 * found.deviation[at], static_cast<double>(at) / record.sample_rate,
       found.weak_until > 0.0 ? fmt::format("; below a tenth of that from {:.3g} to {:.3g} s",
                                            found.window, found.weak_until)
                              : "",

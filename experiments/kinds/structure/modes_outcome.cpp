@@ -1,7 +1,10 @@
 #include "experiments/kinds/structure/modes_outcome.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "experiments/kinds/structure/structure_files.hpp"
@@ -93,6 +96,28 @@ void ModesOutcome::visit_strikes(ResultVisitor& visitor) const {
       });
   visitor({.key = "frequency_scatter"}, fit.frequency_scatter);
   visitor({.key = "damping_scatter"}, fit.damping_scatter);
+}
+
+std::string sentence_of(const StrikeFit& fit, const FitModesOptions& options) {
+  const auto [least, most] = std::ranges::minmax(fit.residuals);
+  const auto& poles = fit.table.model.poles;
+  const auto inside = std::ranges::count_if(poles, [&options](const ModalPole& pole) {
+    const double frequency = pole.omega / (2.0 * std::numbers::pi);
+    return frequency >= options.low && frequency <= options.high;
+  });
+  std::string text = fmt::format("{} modes", poles.size());
+  if (inside < std::ssize(poles)) text += fmt::format(", {} of them", inside);
+  text += fmt::format(
+      " between {:g} and {:g} Hz; the model leaves {:.2g} to {:.2g} % of the responses\n",
+      options.low, options.high, 100.0 * least, 100.0 * most);
+  if (fit.strikes.size() > 1) {
+    text += fmt::format(
+        "from {} to {} frequencies differ by {:.2g} %, damping ratios by {:.2g} % (medians of "
+        "{})\n",
+        options.has_functions ? "session" : "strike", options.has_functions ? "session" : "strike",
+        100.0 * fit.frequency_scatter, 100.0 * fit.damping_scatter, fit.strikes.size());
+  }
+  return text;
 }
 
 }  // namespace modcal

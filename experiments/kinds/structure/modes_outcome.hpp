@@ -1,6 +1,7 @@
 // What kind fit_modes tells of its modes.
 #pragma once
 
+#include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
 #include "libinverse/structure/strikes/strike_fit.hpp"
 
@@ -16,5 +17,8 @@ struct ModesOutcome {
  private:
   void visit_strikes(ResultVisitor& visitor) const;
 };
+
+/// How many modes, and what the model leaves of the responses.
+std::string sentence_of(const StrikeFit& fit, const FitModesOptions& options);
 
 }  // namespace modcal

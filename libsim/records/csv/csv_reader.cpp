@@ -124,7 +124,7 @@ void CsvReader::end_row(std::size_t fields) {
   }
   if (in_first_row_) {
     settle_first_row();
-    if (rows_ == 0 && first_row_.empty()) return;
+    if (first_row_.empty()) return;
   }
   record_.lines.add(rows_, file_.line());
   options_.stop.throw_if_requested();
@@ -141,8 +141,11 @@ void CsvReader::settle_first_row() {
   in_first_row_ = false;
   const std::vector<std::string> units = units_of_row(first_row_);
   for (std::size_t i = 0; i < first_row_.size() && units.empty(); ++i) field(i, first_row_[i]);
-  if (units.size() != columns_.size()) return;
-  for (std::size_t i = 0; i < units.size(); ++i) {
+  if (units.empty()) return;
+  if (units.size() != columns_.size()) {
+    record_.add_problem(ragged_row_text(file_, units.size(), columns_.size()));
+  }
+  for (std::size_t i = 0; i < std::min(units.size(), columns_.size()); ++i) {
     if (columns_[i].channel.unit.empty()) columns_[i].channel.unit = units[i];
   }
   first_row_.clear();

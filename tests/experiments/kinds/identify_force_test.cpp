@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "experiments/kinds/structure/force_doubts.hpp"
 #include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "libsim/base/error.hpp"
@@ -44,6 +45,36 @@ TEST(IdentifyForce, FindsTheForceOfAnotherStrikeAndHoldsItInItsBand) {
   EXPECT_LT(force["relative_error_in_band"].get<double>(), 0.02);
   EXPECT_LT(force["relative_error"].get<double>(), 0.1);
   EXPECT_GT(force["coverage"].get<double>(), 0.9);
+}
+
+// Nine blows in a window with room for fewer pulses than it has instants are no smooth force; a
+// sine may be one. The largest force is not that of the ends, which are hardly told.
+TEST(IdentifyForce, RejectsBlowsThatAreTooManyForPulses) {
+  constexpr std::size_t kCount = 5000;
+  StructureForce found{.shape = ForceShape::kSmooth, .window = 1.0, .untried = 5000.0, .told = 9.0};
+  found.from_zero = true;
+  LoadedStructureRecord loaded{.record = {.sample_rate = 5000.0}};
+  loaded.record.responses.emplace_back(kCount, 0.0);
+  loaded.kinds = {SensorKind::kDisplacement};
+  const auto answer_to = [&](const auto& force_at) {
+    found.force.clear();
+    for (std::size_t j = 0; j < kCount; ++j) found.force.push_back(force_at(j));
+    found.deviation.assign(kCount, 0.1);
+    found.deviation.back() = 1.0;
+    StudyResult result;
+    doubt_force(found, loaded, {}, ForceShape::kAuto, result);
+    return result;
+  };
+  const StudyResult blows = answer_to([](std::size_t j) { return j % 500 < 10 ? 30.0 : 0.1; });
+  EXPECT_EQ(blows.status, report::Status::kFailed);
+  EXPECT_THAT(blows.summary, HasSubstr("stands in peaks, as one of blows"));
+  EXPECT_THAT(blows.summary, HasSubstr("window: 0.72 s"));
+  const StudyResult sine = answer_to([](std::size_t j) {
+    return j + 1 == kCount ? 9.0 : std::sin(0.01 * static_cast<double>(j));
+  });
+  EXPECT_THAT(sine.summary, HasSubstr("impacts were not tried"));
+  EXPECT_THAT(sine.summary, Not(HasSubstr("stands in peaks")));
+  EXPECT_NEAR(found.force[told_peak(found)], 1.0, 1e-4);
 }
 
 TEST(IdentifyForce, ItsBandIsComparedAboveTheDriftOfTheForceSensor) {

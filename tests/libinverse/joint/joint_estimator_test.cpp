@@ -133,9 +133,8 @@ TEST(JointEstimator, HoldsTheBendingThatNobodyStates) {
       errors.push_back(estimate.result.force[j] - truth[j]);
     }
     remove_mean(errors);
-    const auto held = std::ranges::count_if(errors, [&](double error) {
-      return std::abs(error) < 1.96 * estimate.force_deviation;
-    });
+    const auto held = std::ranges::count_if(
+        errors, [&](double error) { return std::abs(error) < 1.96 * estimate.force_deviation; });
     const bool is_noted = std::ranges::any_of(estimate.notes, [](const std::string& note) {
       return note.find("whether the ends feel the bending") != std::string::npos;
     });
