@@ -135,7 +135,7 @@ class RunSummary {
   // The numbers that answer, then the others.
   std::vector<std::string> shown_first() const {
     std::vector<std::string> names = names_;
-    std::ranges::stable_partition(names, is_shown_first);
+    std::stable_partition(names.begin(), names.end(), is_shown_first);
     return names;
   }
 
