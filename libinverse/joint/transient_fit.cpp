@@ -196,11 +196,12 @@ double TransientFit::ringing_misfit(Setting setting, std::size_t side,
     if (misfit > kMostRinging) return misfit;
   }
   TransientFit fit = *this;
-  double least = std::numeric_limits<double>::infinity(), before = least;
-  do {
-    before = least;
-    least = std::min(least, fit.ringing_step(setting, side, spectrum, bins, workspace));
-  } while (least < 0.5 * before && least > kRingsByItself);
+  double least = std::numeric_limits<double>::infinity();
+  for (bool falls = true; falls;) {
+    const double misfit = fit.ringing_step(setting, side, spectrum, bins, workspace);
+    falls = misfit < 0.5 * least && misfit > kRingsByItself;
+    least = std::min(least, misfit);
+  }
   return least;
 }
 

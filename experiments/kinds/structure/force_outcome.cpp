@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libsim/signal/fft.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
