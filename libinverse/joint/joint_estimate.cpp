@@ -68,8 +68,9 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
         "whether the ends feel the bending of the string, 1 + B n^2 times the tension in mode n, "
         "as "
         "a support does that holds it, is not stated: the deviation holds both, which makes it "
-        "{:.2g} times as wide; state reaction: support or tension (of the calibration, or of the "
-        "estimator)",
+        "{:.2g} times as wide; state reaction: support or tension (calibration.reaction, or that "
+        "of "
+        "inversion.estimator: {{type: joint}})",
         result.bending_widening));
   }
   if (!both) {

@@ -245,6 +245,7 @@ void JointInversion::take_out_decays(const Weights& weights, const JointMethod& 
 }
 
 double JointInversion::ringing_misfit(const ReactionPair& reactions, const SensorNoiseLevel& noise,
+                                      std::span<const double> lines,
                                       JointWorkspace& workspace) const {
   if (model_.truncation != Truncation::kTransient) return std::numeric_limits<double>::quiet_NaN();
   const auto top = static_cast<std::size_t>(highest_ / grid_.bin_width());
@@ -257,7 +258,7 @@ double JointInversion::ringing_misfit(const ReactionPair& reactions, const Senso
     JointResult result;
     transform(alone, OffsetRule::kNone, workspace, result);
     sum += transient_.ringing_misfit(setting_of(weights, workspace), r, workspace.spectrum[r],
-                                     std::min(top + 1, fft_.bins()), workspace.transient);
+                                     std::min(top + 1, fft_.bins()), lines, workspace.transient);
     sides += 1.0;
   }
   return sum / sides;

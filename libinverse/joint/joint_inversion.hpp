@@ -163,7 +163,7 @@ class JointInversion {
   /// a sensor's gain, or a force that is small, is not looked at. NaN unless the truncation is
   /// kTransient. Throws as invert() does.
   double ringing_misfit(const ReactionPair& reactions, const SensorNoiseLevel& noise,
-                        JointWorkspace& workspace) const;
+                        std::span<const double> lines, JointWorkspace& workspace) const;
 
  private:
   struct SidePower {

@@ -135,6 +135,20 @@ void TransientFit::subtract(const Setting& setting, Spectra spectra, Workspace& 
   });
 }
 
+// One of no mode, of any size.
+void TransientFit::add_rate(Complex rate) {
+  modes_.push_back({.pole = std::exp(rate / sample_rate_), .left = 1.0, .right = 1.0});
+  rates_.push_back(rate);
+  contact_.push_back(0.0);
+}
+
+// Of poles that decay by a third over the record: on the axis the sum of one has no end.
+void TransientFit::add_sensors(std::span<const double> lines) {
+  const double decay = 0.3 * grid_.spacing / (2.0 * std::numbers::pi);
+  add_rate(-decay);
+  for (const double line : lines) add_rate({-decay, 2.0 * std::numbers::pi * line});
+}
+
 TransientFit TransientFit::with_near_poles(double step) const {
   TransientFit fit = *this;
   for (std::size_t n = 0; n < modes_.size(); ++n) {
@@ -180,7 +194,7 @@ double TransientFit::ringing_step(const Setting& setting, std::size_t side,
 
 double TransientFit::ringing_misfit(Setting setting, std::size_t side,
                                     std::span<const Complex> spectrum, std::size_t bins,
-                                    Workspace& workspace) const {
+                                    std::span<const double> lines, Workspace& workspace) const {
   const std::vector<double> no_force(bins, 0.0);
   setting.prior = no_force;
   setting.noise_variance[1 - side] = 0.0;
@@ -190,12 +204,14 @@ double TransientFit::ringing_misfit(Setting setting, std::size_t side,
     few.modes_.resize(kFirstModes + kFirstModes / 2);
     few.rates_.resize(few.modes_.size());
     few.contact_.resize(few.modes_.size());
+    few.add_sensors(lines);
     const double top = rates_[kFirstModes].imag() / grid_.spacing;
     const double misfit = few.ringing_step(
         setting, side, spectrum, std::min(static_cast<std::size_t>(top) + 1, bins), workspace);
     if (misfit > kMostRinging) return misfit;
   }
   TransientFit fit = *this;
+  fit.add_sensors(lines);
   double least = std::numeric_limits<double>::infinity();
   for (bool falls = true; falls;) {
     const double misfit = fit.ringing_step(setting, side, spectrum, bins, workspace);

@@ -54,9 +54,11 @@ class TransientFit {
   /// Mean over the bins 1 … `bins` − 1 of what free decays, without a force, leave of one
   /// reaction's spectrum over the noise variance: 1 where the string rings by itself. The poles are
   /// the record's own: a second decay exp((λ_n + ε) t) a mode is what λ_n being off makes of the
-  /// first, and moves it (Gauss and Newton), as long as the misfit falls.
+  /// first, and moves it (Gauss and Newton), as long as the misfit falls. What sensors add is taken
+  /// out by decays of its own: a drift, and `lines` of the mains [Hz].
   double ringing_misfit(Setting setting, std::size_t side, std::span<const Complex> spectrum,
-                        std::size_t bins, Workspace& workspace) const;
+                        std::size_t bins, std::span<const double> lines,
+                        Workspace& workspace) const;
 
   /// Adds the decays' own displacement, or velocity, at the contact to its spectrum, from bin
   /// `first` on.
@@ -104,6 +106,8 @@ class TransientFit {
   void fill_effect(const Setting& setting, const Effect& effect, Signal signal,
                    std::ptrdiff_t first, Workspace& workspace) const;
   std::vector<RingingMode> moving(bool velocity) const;
+  void add_rate(Complex rate);
+  void add_sensors(std::span<const double> lines);
   TransientFit with_near_poles(double step) const;
   void move_poles(double step, const Workspace& workspace);
   double ringing_step(const Setting& setting, std::size_t side, std::span<const Complex> spectrum,

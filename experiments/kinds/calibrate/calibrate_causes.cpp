@@ -204,8 +204,7 @@ std::string late_channel(const CalibrationResult& result) {
     if (one.name != sensor_type(Sensor::kDelay).name || !one.at_bound) continue;
     return fmt::format(
         "the channel at {} is later by {:.3g} us or more, on the bound of what is looked for: "
-        "state "
-        "record.{}.delay: {:.3g} us more than now and run again",
+        "state record.{}.delay: {:.3g} us more than now and run again",
         one.final > 0.0 ? "x = L" : "x = 0", 1e6 * std::abs(one.final),
         one.final > 0.0 ? "right" : "left", 1e6 * std::abs(one.final));
   }

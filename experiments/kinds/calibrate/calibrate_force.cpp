@@ -89,11 +89,14 @@ std::vector<InversionResult> signals_of_models(
   return results;
 }
 
-// Of a record that the model explains.
+// Of a record that the model explains, and that alone holds the string.
 double ringing_misfit(const CalibrateOptions& options, const Observation& observation,
                       const CalibrationOutcome& outcome) {
   const auto& found = outcome.result.continuation;
-  if (!found || !found->right || observation.truth) return CalibratedForce{}.ringing_misfit;
+  const bool is_asked = found && found->right && !observation.truth;
+  if (!is_asked || !starts_from_record(options.calibration)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   StringSupport support = options.calibration.support.support(true);
   support.bending_open = false;  // a decay is one either way
   const JointInversion inversion(outcome.refined.basis, outcome.refined.contact,
@@ -102,7 +105,7 @@ double ringing_misfit(const CalibrateOptions& options, const Observation& observ
   JointWorkspace workspace;
   return inversion.ringing_misfit(
       {observation.reactions[0]->samples, observation.reactions[1]->samples}, {.rms = found->noise},
-      workspace);
+      found->lines, workspace);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ struct CalibratedForce {
   Observation observation;  ///< without it
   std::vector<SideIdentification> sides;
   /// What free decays leave of the record over its noise (JointInversion::ringing_misfit); NaN of a
-  /// simulation and of a fit that is not right.
+  /// simulation, of a fit that is not right and where more than the record holds the string.
   double ringing_misfit = std::numeric_limits<double>::quiet_NaN();
 };
 

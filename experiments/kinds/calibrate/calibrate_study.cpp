@@ -112,16 +112,12 @@ std::string too_many_modes(const Found& found) {
       stated, *identified, modes_told(*identified));
 }
 
-// Whether the record alone holds the string.
-bool is_open(const CalibrateOptions& options, const Found& found) {
-  return found.measured.truth == nullptr && starts_from_record(options.calibration);
-}
-
 // Of a record that tells hardly a mode, where nothing else holds the string: f0 and x_c have many
 // places in its noise.
 std::string too_few_modes(const CalibrateOptions& options, const Found& found) {
   const ContinuationResult* estimate = found.estimate();
-  if (!is_open(options, found) || !estimate || !estimate->frequencies_free) return {};
+  const bool is_open = found.measured.truth == nullptr && starts_from_record(options.calibration);
+  if (!is_open || !estimate || !estimate->frequencies_free) return {};
   const auto identified =
       std::ranges::count(estimate->modes, ModeSource::kIdentified, &ModeVerdict::source);
   if (identified >= kLeastIdentified) return {};
@@ -134,9 +130,9 @@ std::string too_few_modes(const CalibrateOptions& options, const Found& found) {
 }
 
 // Of a record in which nothing drives the string: what tells x_c is the force.
-std::string no_force(const CalibrateOptions& options, const Found& found) {
+std::string no_force(const Found& found) {
   const double misfit = found.ringing_misfit;
-  if (!is_open(options, found) || !(misfit > kLeastRinging && misfit < kRingsByItself)) return {};
+  if (!(misfit > kLeastRinging && misfit < kRingsByItself)) return {};
   return fmt::format(
       "nothing drives the string in this record: it rings by itself (free decays leave {:.3g} "
       "times the noise of it), which does not tell x_c; kind: identify finds its modes, or take a "
@@ -150,7 +146,7 @@ void add_answer(const CalibrateOptions& options, const InvertOptions& shown, con
   add_calibration_summary(found.outcome, result);
   add_calibration_warnings(found.outcome, result);
   for (const std::string& reason :
-       {too_many_modes(found), no_force(options, found), too_few_modes(options, found)}) {
+       {too_many_modes(found), no_force(found), too_few_modes(options, found)}) {
     if (!reason.empty()) reject_calibration(reason, result);
   }
   if (const ContinuationResult* estimate = found.estimate()) {

@@ -78,14 +78,18 @@ TEST(JointEstimator, StaticRemainderIsOnForRecordedStringsUnlessStated) {
   EXPECT_LT(1.5 * middle_error(on, string.force), middle_error(off, string.force));
 }
 
-TEST(JointEstimator, BendingOfTheSupportsIsAnOption) {
-  const std::size_t samples = 4096;
+ModalBasis stiff_violin_g(double inharmonicity) {
   StringModel model;
   model.length = 0.33;
   model.linear_density = 3.1e-3;
   model.fundamental = 196.0;
-  model.inharmonicity = 1e-3;  // reactions of mode 50 times 3.5
-  const ModalBasis basis = make_modal_basis(model);
+  model.inharmonicity = inharmonicity;
+  return make_modal_basis(model);
+}
+
+TEST(JointEstimator, BendingOfTheSupportsIsAnOption) {
+  const std::size_t samples = 4096;
+  const ModalBasis basis = stiff_violin_g(1e-3);  // reactions of mode 50 times 3.5
   const DrivenString string =
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, false, true);
   const auto error_with = [&](bool bending) {
@@ -102,12 +106,7 @@ TEST(JointEstimator, BendingOfTheSupportsIsAnOption) {
 // right, and the deviation that of the noise.
 TEST(JointEstimator, HoldsTheBendingThatNobodyStates) {
   const std::size_t samples = 8192;
-  StringModel model;
-  model.length = 0.33;
-  model.linear_density = 3.1e-3;
-  model.fundamental = 196.0;
-  model.inharmonicity = 2e-4;  // reactions of mode 50 times 1.5
-  const ModalBasis basis = make_modal_basis(model);
+  const ModalBasis basis = stiff_violin_g(2e-4);  // reactions of mode 50 times 1.5
   DrivenString string =
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, true, true);
   add_noise(string, 0.003, StreamKey(2));
