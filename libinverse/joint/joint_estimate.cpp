@@ -27,6 +27,19 @@ void warn_of_sides(const JointInversion& inversion, const JointResult& result,
   }
 }
 
+void note_bending(const JointResult& result, std::vector<std::string>& notes) {
+  if (result.bending_widening > kWorthAWord) {
+    notes.push_back(fmt::format(
+        "whether the ends feel the bending of the string, 1 + B n^2 times the tension in mode n, "
+        "as "
+        "a support does that holds it, is not stated: the deviation holds both, which makes it "
+        "{:.2g} times as wide; state reaction: support or tension (calibration.reaction, or that "
+        "of "
+        "inversion.estimator: {{type: joint}})",
+        result.bending_widening));
+  }
+}
+
 }  // namespace
 
 std::vector<Estimate> estimate_with(const JointInversion& inversion, const EstimationRecord& record,
@@ -63,16 +76,7 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
                       {"force_deviation", result.deviation.force},
                       {"misfit_of_sides", result.misfit}};
   warn_of_sides(inversion, result, estimate.warnings);
-  if (result.bending_widening > kWorthAWord) {
-    estimate.notes.push_back(fmt::format(
-        "whether the ends feel the bending of the string, 1 + B n^2 times the tension in mode n, "
-        "as "
-        "a support does that holds it, is not stated: the deviation holds both, which makes it "
-        "{:.2g} times as wide; state reaction: support or tension (calibration.reaction, or that "
-        "of "
-        "inversion.estimator: {{type: joint}})",
-        result.bending_widening));
-  }
+  note_bending(result, estimate.notes);
   if (!both) {
     estimate.warnings.push_back(fmt::format(
         "reaction {} is missing: the estimate rests on the other one alone, and nothing "
