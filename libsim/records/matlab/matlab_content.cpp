@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <set>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
@@ -97,10 +98,16 @@ MatlabContent::MatlabContent(Path path) : path_(std::move(path)) {
   {
     const std::lock_guard lock(hdf5_lock());
     const File file = opened(path_);
+    std::set<std::string> names;
     for (;;) {
       const Variable variable = owned(Mat_VarReadNextInfo(file.get()));
       if (variable == nullptr) break;
-      if (variable->name == nullptr) continue;  // nothing could ask for it
+      // Nothing could ask for one without a name.
+      if (variable->name == nullptr || *variable->name == 0) continue;
+      // libmatio would read the first of them in place of each.
+      MODCAL_REQUIRE(names.insert(variable->name).second,
+                     "{}: two variables are named {}; load and save it again", path_.string(),
+                     variable->name);
       add_arrays(variable.get(), {variable->name}, {});
     }
   }
@@ -164,7 +171,8 @@ const matvar_t& MatlabContent::field(const NamedArray& array) {
     if (found != nullptr) found = Mat_VarGetStructFieldByIndex(found, place, 0);
   }
   MODCAL_REQUIRE(found != nullptr && found->data != nullptr && size_of(*found) == array.size() &&
-                     found->class_type == leaf.type,
+                     found->class_type == leaf.type &&
+                     (found->isComplex != 0) == (array.holds == NamedArray::Holds::kComplex),
                  "{}: the variable {} cannot be read: the file is damaged; save it again",
                  path_.string(), array.text());
   return *found;

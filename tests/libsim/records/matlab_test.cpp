@@ -310,6 +310,20 @@ TEST_F(Matlab, ADamagedCompressedVariableIsRefused) {
   EXPECT_EQ(refused, 200u);
 }
 
+// libmatio reads the first of both in place of each; where one was complex, its two parts were
+// read as numbers.
+TEST_F(Matlab, TwoVariablesOfOneNameAreRefused) {
+  const auto file_of = [&](std::size_t rows, const std::vector<double>& numbers) {
+    std::filesystem::remove(file());
+    MatWriter(file(), MAT_FT_MAT5).write(MatWriter::doubles("force", rows, numbers));
+    return content_of(file());
+  };
+  constexpr std::size_t kHeader = 128;
+  const std::string first = file_of(2, {1.0, 2.0});
+  write("a.mat", first + file_of(3, {1.0, 2.0, 3.0}).substr(kHeader));
+  EXPECT_THAT(refusal(), HasSubstr("two variables are named force; load and save it again"));
+}
+
 TEST_F(Matlab, ARateThatIsNotPositiveIsRefused) {
   {
     MatWriter out(file(), MAT_FT_MAT5);
