@@ -74,6 +74,7 @@ class VariableWalk {
     kSparse = 5,
     kDouble = 6,
     kUnsigned64 = 15,
+    kFunction = 16,
     kOpaque = 17  ///< tables and dates of MATLAB's own
   };
   enum Type : std::uint8_t { kMatrix = 14 };
@@ -85,16 +86,20 @@ class VariableWalk {
   void contents(Class type, bool is_complex, std::uint32_t depth) {
     require_sound(type >= kCell && type <= kOpaque);
     const double count = type == kOpaque ? 0.0 : dimensions();
-    pass(element());                                    // its name
-    if (type == kSparse || type > kUnsigned64) return;  // no numbers that a record could be of
-    if (type >= kDouble || type == kText) {
+    pass(element());              // its name
+    if (type == kOpaque) return;  // nothing that libmatio reads
+    if (type == kSparse) {        // indices of rows and columns, numbers
+      while (left_ > 0) pass(element());
+      return;
+    }
+    if ((type >= kDouble && type <= kUnsigned64) || type == kText) {
       numbers(count);
       if (is_complex) numbers(count);
       return;
     }
     double fields = 1.0;
     if (type == kObject) pass(element());  // the name of its class
-    if (type != kCell) {
+    if (type != kCell && type != kFunction) {
       const Element length = element();
       require_sound(length.size == 4);
       const std::uint32_t letters = word();

@@ -263,7 +263,8 @@ TEST_F(Matlab, AVariableThatStatesMoreThanItHoldsIsRefused) {
     words[1] = static_cast<std::uint32_t>(4 * words.size() - 8);
     return words;
   };
-  constexpr std::uint32_t kCell = 1, kStructure = 2, kText = 4, kDouble = 6, kBytes = 2;
+  constexpr std::uint32_t kCell = 1, kStructure = 2, kText = 4, kSparse = 5, kDouble = 6,
+                          kFunction = 16, kBytes = 2;
   const std::vector<std::uint32_t> three = {kBytes, 3, 0x00030201, 0};
   const std::vector<std::uint32_t> field = {0x00040005, 2, 1, 2, 0x62, 0};
   for (const bool is_packed : {false, true}) {
@@ -275,6 +276,10 @@ TEST_F(Matlab, AVariableThatStatesMoreThanItHoldsIsRefused) {
              {variable(kText, 4, {4, 4, 0x00620061, 0}), false},
              {variable(kCell, kMany, {14, 0}), false},
              {variable(kStructure, kMany, field), false},
+             {variable(kFunction, kMany, {14, 0}), false},
+             {variable(kFunction, 1, {14, 0}), true},
+             {variable(kSparse, 3, {5, 4, 0, 0, 5, 8, 0, 1, 9, 8, 0, 0}), true},
+             {variable(kSparse, 3, {5, kMany, 0, 0}), false},
              {{14, 48, 6, 8, kDouble, 0, 5, 4, 3, 0, 1, 1, 0x61, 0}, false},
              {{14, 200, 6, 8, kDouble, 0, 5, 0x68010008, 1, 30}, false}}) {
       write("a.mat", of_version_5(words, is_packed));
