@@ -100,6 +100,9 @@ void JsonReader::value(const ResultField& field, Value held) {
     **number = std::numeric_limits<double>::quiet_NaN();
   } else if (number && (*found == "inf" || *found == "-inf")) {
     **number = *found == "inf" ? kInfinity : -kInfinity;
+  } else if (auto* const* whole = std::get_if<std::int64_t*>(&held)) {
+    // A fraction, or a number beyond 64 bits, is no count: this throws.
+    **whole = found->get_ref<const std::int64_t&>();
   } else {
     std::visit([found](auto* one) { found->get_to(*one); }, held);
   }

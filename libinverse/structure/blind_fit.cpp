@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libinverse/structure/blind_likelihood.hpp"
+#include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 
@@ -118,9 +119,37 @@ double mean_logarithm(const BinVariances& variances) {
   return sum / count;
 }
 
+// Of the sum of squares, by which a step is the last one: a thousandth of a deviation; a third
+// where what is fitted with changes anyway.
+constexpr double kLeastGain = 1e-6, kLeastGainOnTheWay = 0.1;
+
+// Sizes by what the fit has found with them; whether they were right to a tenth.
+bool resize(const BlindFit& fit, StructureChange& change) {
+  const auto modes = static_cast<Index>(fit.model.poles.size());
+  bool is_settled = true;
+  const auto update = [&](double StructureChange::*size, Index first, Index end, Index step) {
+    double squares = 0.0, told = 0.0;
+    for (Index i = first; i < end; i += step) {
+      squares += std::pow(fit.change[i] / fit.prior[i], 2);
+      told += fit.told[i];
+    }
+    if (!(told > 0.0)) return;
+    // The mean of a variance that is told by so many numbers (Jeffreys' prior), twice at most.
+    const double ratio = std::sqrt(squares / std::max(told - 2.0, 0.5 * told));
+    const double usual = StructureChange().*size, before = change.*size;
+    change.*size =
+        std::clamp(before * std::clamp(ratio, 0.3, 3.0), kLeastChange * usual, kMostChange * usual);
+    is_settled = is_settled && std::abs(change.*size / before - 1.0) < 0.1;
+  };
+  update(&StructureChange::frequency, 0, 2 * modes, 2);
+  update(&StructureChange::damping, 1, 2 * modes, 2);
+  update(&StructureChange::residue, 2 * modes, fit.change.size(), 1);
+  return is_settled;
+}
+
 BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
                   const ContourSpectra& spectra, const BinVariances& variances, bool at_rest,
-                  const Eigen::VectorXd& start_at) {
+                  const Eigen::VectorXd& start_at, double least_gain = kLeastGain) {
   MODCAL_REQUIRE(table.sensors.size() >= 2,
                  "{}: one response explains any model; modes are refined by two sensors and more",
                  table.sensors.size());
@@ -162,7 +191,7 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
       here = std::move(there);
     }
     damping *= 0.1;
-    if (!better || gain < 1e-6) break;
+    if (!better || gain < least_gain) break;
   }
   fit.prior = prior;
   fit.numbers = likelihood.numbers();
@@ -219,10 +248,11 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
   // What rings on behind the part that is taken has e^−8 of its amplitude.
   constexpr double rung_out = 8.0;
   table.require_modes("a refinement");
-  const Eigen::VectorXd prior = prior_of(table, change);
+  StructureChange allowed = change;
   StructureTable refined = table;
   BlindFit fit;
   double contour = 0.0, level = 0.0;
+  bool is_settled = false;
   // Four as a rule; more where the table was so far off that the variances have not settled, to 2
   // %, a hundredth of the deviations.
   for (int pass = 0; pass < 16; ++pass) {
@@ -238,10 +268,16 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
     }
     const auto spectra = ContourSpectra::of(part, contour, table.low, table.high);
     const BinVariances variances = variances_beside(refined, spectra, fit, contour == before);
-    fit = fit_with(prior, table.model, spectra, variances, ends && at_rest, fit.change);
+    const double least_gain = is_settled ? kLeastGain : kLeastGainOnTheWay;
+    fit = fit_with(prior_of(table, allowed), table.model, spectra, variances, ends && at_rest,
+                   fit.change, least_gain);
+    fit.allowed = allowed;
     refined.model = fit.model;
     const double last = std::exchange(level, mean_logarithm(variances));
-    if (pass >= 3 && std::abs(level - last) < 0.02) break;
+    const bool is_last = is_settled;
+    is_settled =
+        (!change.is_found || resize(fit, allowed)) && pass >= 2 && std::abs(level - last) < 0.02;
+    if (is_last && is_settled) break;
   }
   const double left = std::max(1.0, fit.misfit);
   fit.covariance *= left;

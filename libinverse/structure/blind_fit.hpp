@@ -17,6 +17,7 @@ struct BlindFit {
   Eigen::MatrixXd covariance;  ///< of θ
   Eigen::MatrixXd root;        ///< covariance = root rootᵀ
   Eigen::VectorXd prior;       ///< deviations of θ before the responses
+  StructureChange allowed;     ///< of which these are, without what the table itself does not know
   Eigen::VectorXd told;        ///< share of θ_i that the responses tell, by the curvature
   Eigen::VectorXd expected;    ///< deviation of θ where the prior is right
   double numbers = 0.0;        ///< 2B(K − 1)/κ, what the data are worth
@@ -55,8 +56,9 @@ BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
 /// The fit of a record that begins at rest: on the contours σ, σ/2 and σ/4, the lower ones as far
 /// as the record is long enough for nothing to be left of its end, and on the last one until the
 /// variances of its bins have settled, each from what the one before has found, with variances_of()
-/// the model so far. The covariance is χ² times as large where it is above 1. The table is not
-/// changed.
+/// the model so far. A change whose size is found has it settled, too: sd² → sd² Σ θ²/sd² ÷ Σ told
+/// of frequencies, damping ratios and constants (MacKay, 1992), within kLeastChange and
+/// kMostChange. The covariance is χ² times as large where it is above 1. The table is not changed.
 BlindFit refined_table(const StructureTable& table, const StructureRecord& record, double sigma,
                        const StructureChange& change, bool at_rest = true);
 

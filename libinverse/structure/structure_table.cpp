@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "libinverse/structure/structure_record.hpp"
+#include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -72,6 +73,21 @@ double StructureTable::pulse_at(double frequency) const {
   if (i + 1 >= pulse.size()) return pulse.back();
   const double share = at - static_cast<double>(i);
   return (1.0 - share) * pulse[i] + share * pulse[i + 1];
+}
+
+StructureChange StructureChange::open() {
+  StructureChange change{.is_found = true};
+  change.frequency *= kFirstChange;
+  change.damping *= kFirstChange;
+  change.residue *= kFirstChange;
+  return change;
+}
+
+bool StructureChange::is_at_bound() const {
+  const StructureChange usual;
+  constexpr double rounding = 1.0 - 1e-9;
+  return is_found && (frequency >= rounding * kMostChange * usual.frequency ||
+                      residue >= rounding * kMostChange * usual.residue);
 }
 
 double modal_power(const ModalModel& model, std::size_t pair, Complex s) {

@@ -57,6 +57,13 @@ struct StructureChange {
   /// √(f_n f_m)/|f_n − f_m| (first order of perturbation; 1: a change in one place): constants that
   /// are not known may be off by that, too [1]; 0: each by itself.
   double coupling = 1.0;
+  /// The sizes of the first three are found from the responses, from those here on.
+  bool is_found = false;
+
+  /// One whose size is found.
+  static StructureChange open();
+  /// A size that is found has reached the most that it may: what differs is another structure.
+  bool is_at_bound() const;
 };
 
 /// With imaginary parts of the constants, 0 where they are not stated.

@@ -91,10 +91,25 @@ void doubt_begin(const StructureForce& found, const LoadedStructureRecord& loade
   if (!why.empty()) reject(std::move(why), result);
 }
 
+// A structure changes little; what would have to change it all is another one, or another place.
+bool doubt_change(const StructureForce& found, StudyResult& result) {
+  if (!found.refined || !found.refined->allowed.is_at_bound()) return false;
+  const StructureChange& change = found.refined->allowed;
+  reject(fmt::format(
+             "rejected: no force explains the responses together, unless the structure has changed "
+             "by {:.2g} % and more in its frequencies, or its modal constants by {:.2g} %: compare "
+             "order, sign, unit and delay of the channels and the place of the contact with those "
+             "of the table; where it has changed so much, fit its modes again",
+             100.0 * change.frequency, 100.0 * change.residue),
+         result);
+  return true;
+}
+
 // Sensors that contradict each other refuse the answer.
 void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loaded,
                    StudyResult& result) {
   if (found.told < 1.0) return;  // sensors that hear nothing contradict nobody
+  if (doubt_change(found, result)) return;
   const auto worst = std::ranges::max_element(found.sensor_left);
   const double power = contradiction_of(found.sensor_left);
   if (power < kContradiction * kContradiction) return;

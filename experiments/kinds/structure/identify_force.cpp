@@ -113,10 +113,14 @@ void IdentifyForceOptions::visit_keys(OptionVisitor& visitor) {
       {.unit = "s", .range = Range::positive(), .word = "automatic"}, window);
   visitor("contour", "the record is weighted by exp(-contour t); automatic: 2 over the window",
           {.unit = "1/s", .range = Range::positive(), .word = "automatic"}, contour);
-  visitor("change",
-          "the structure may have changed since its table was made: its modes are refined by the "
-          "responses first, without their force; needs two sensors and more",
-          refines, change);
+  visitor(
+      "change",
+      "the structure may have changed since its table was made: its modes are refined by the "
+      "responses first, without their force; needs two sensors and more. Where it is not stated "
+      "and the sensors contradict the table, a change of the size that they tell is allowed for",
+      refines, change);
+  visitor("unchanged", "the structure is that of its table, whatever the sensors contradict",
+          unchanged);
   visitor("draws", "models drawn from the table's deviations for the band",
           {.range = Range::closed(2.0, 1000.0)}, draws);
   visitor("write_sound", "write the force as a sound file as well, identified.wav: 1.0 is 1 N",
@@ -151,6 +155,10 @@ std::vector<Finding> IdentifyForceOptions::lint() const {
     add_finding(findings, "other_places",
                 "one response is explained by a force at any place: name a second sensor, or leave "
                 "the other places out");
+  }
+  if (refines && unchanged) {
+    add_finding(findings, "unchanged",
+                "modes that change: refines cannot be held: leave one of the two out");
   }
   if (refines && record.responses.size() == 1) {
     add_finding(findings, "record.responses",
@@ -234,7 +242,8 @@ StructureForceOptions IdentifyForceOptions::force_options(
           .quiet = loaded.quiet,
           .draws = static_cast<std::size_t>(draws),
           .seed = static_cast<std::uint64_t>(seed),
-          .change = refines ? std::optional<StructureChange>(change) : std::nullopt};
+          .change = refines ? std::optional<StructureChange>(change) : std::nullopt,
+          .may_have_changed = !unchanged};
 }
 
 StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_first) const {

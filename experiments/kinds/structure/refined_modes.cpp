@@ -93,10 +93,17 @@ std::string RefinedModes::sentence() const {
           ? std::string("the responses are worth no more numbers than there are unknowns")
           : fmt::format("{:.0f} of the {:.0f} numbers that the responses are worth are left",
                         fit.degrees, fit.numbers);
-  return fmt::format(
+  const std::string sentence = fmt::format(
       "modes refined without the force: median change of a frequency {:.2g}, its deviation "
       "{:.2g}; {}\n",
       quantile(moved, 0.5), quantile(deviations, 0.5), left);
+  const StructureChange& change = fit.allowed;
+  if (!change.is_found) return sentence;
+  return fmt::format(
+      "the sensors contradict the table as it is: a structure was allowed for that has changed by "
+      "as much as they tell, {:.2g} % in frequencies, {:.2g} % in damping ratios, {:.2g} % in "
+      "modal constants\n{}",
+      100.0 * change.frequency, 100.0 * change.damping, 100.0 * change.residue, sentence);
 }
 
 void RefinedModes::add_parameters(std::vector<FoundParameter>& parameters) const {

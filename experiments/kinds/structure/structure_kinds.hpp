@@ -66,6 +66,7 @@ struct IdentifyForceOptions {
   bool non_negative = false;
   double window = std::numeric_limits<double>::quiet_NaN();
   double contour = std::numeric_limits<double>::quiet_NaN();
+  bool unchanged = false;
   bool refines = false;
   StructureChangeOptions change;
   std::int64_t draws = 12;

@@ -65,16 +65,10 @@ double ForceSearch::loud_until(double seen) {
   return static_cast<double>(j) / rate();
 }
 
-StructureForce ForceSearch::run(const StructureRecord& record) {
-  if (options_.change) refine(record);
+StructureForce ForceSearch::run() {
   result_.misfit = variances_.misfit;
   result_.sensor_misfit = variances_.by_sensor;
-  result_.sensor_left = variances_.left;
-  for (std::size_t k = 0; k < result_.sensor_left.size() && !recorded_.empty(); ++k) {
-    // Of the whole response.
-    result_.sensor_left[k] *=
-        std::sqrt(mean_power(spectra_.responses[k]) / mean_power(recorded_[k]));
-  }
+  result_.sensor_left = left_of_responses();
   result_.predicted = predictions_of(spectra_, transfers_, variances_);
   const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNoSensor);
   find_power(evidence);
@@ -93,14 +87,39 @@ StructureForce ForceSearch::run(const StructureRecord& record) {
 
 double ForceSearch::rate() const { return spectra_.sample_rate; }
 
-void ForceSearch::refine(const StructureRecord& record) {
-  result_.refined = refined_table(table_, record, result_.sigma, *options_.change, !result_.rang);
+std::vector<double> ForceSearch::left_of_responses() const {
+  std::vector<double> left = variances_.left;
+  for (std::size_t k = 0; k < left.size() && !recorded_.empty(); ++k) {
+    left[k] *= std::sqrt(mean_power(spectra_.responses[k]) / mean_power(recorded_[k]));
+  }
+  return left;
+}
+
+std::optional<StructureChange> ForceSearch::change_wanted() const {
+  if (options_.change) return options_.change;
+  if (!options_.may_have_changed || !table_.measured.empty()) return {};
+  const double left = contradiction_of(left_of_responses());
+  if (!(left > kChanged * kChanged && variances_.misfit > kBeyond * kBeyond)) return {};
+  if (power_told(evidence_of(spectra_, transfers_, variances_, kNoSensor)) < 1.0) return {};
+  // One sensor alone is off, which is said by name.
+  if (left >= kContradiction * kContradiction &&
+      odd_one_out(predictions_of(spectra_, transfers_, variances_))) {
+    return {};
+  }
+  return StructureChange::open();
+}
+
+bool ForceSearch::refine(const StructureRecord& record) {
+  const std::optional<StructureChange> change = change_wanted();
+  if (!change) return false;
+  result_.refined = refined_table(table_, record, result_.sigma, *change, !result_.rang);
   table_.model = result_.refined->model;
   if (!recorded_.empty()) spectra_.responses = recorded_;
   transfers_ = transfers_of(table_, spectra_);
   of_change_ = spread_of_change();
   variances_ = variances();
   take_state_out();
+  return true;
 }
 
 bool ForceSearch::wants_pulses() {

@@ -23,12 +23,18 @@ class ForceSearch {
   /// After which a smooth force stays below kLoud of its peak, below twice that with two deviations
   /// [s]. It is looked for until `seen` [s]: behind that the record's end looks like a force.
   double loud_until(double seen);
+  /// Refines the modes by the part where a change is stated, or the sensors contradict the table.
+  bool refine(const StructureRecord& record);
+  const StructureTable& table() const { return table_; }
   /// structure_force() of this part; the search is over then.
-  StructureForce run(const StructureRecord& record);
+  StructureForce run();
 
  private:
   double rate() const;
-  void refine(const StructureRecord& record);
+  /// What is stated, or, where the sensors contradict the table, one whose size is found.
+  std::optional<StructureChange> change_wanted() const;
+  /// What each sensor leaves, over the whole of its response.
+  std::vector<double> left_of_responses() const;
   /// Those of the table; of modes that were refined H may be off by what is left unknown of them.
   BinVariances variances() const;
   /// E|δH_k|² of models drawn from what a refinement has left unknown, K.

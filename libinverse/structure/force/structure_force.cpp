@@ -38,11 +38,11 @@ bool is_struck_late(const StructureRecord& record, double share) {
 // Without one sensor, if the others agree by far better without it.
 StructureForce found_in(const StructureTable& table, const StructureRecord& record,
                         const StructureForceOptions& options, bool may_leave_out) {
-  const ActingPart part = acting_part(table, record, options);
-  const StructureRecord own = part.of(record);
-  ForceSearch search(table, own, options, part.duration);
+  ActingPart part = acting_part(table, record, options);
+  StructureRecord own = part.of(record);
+  std::optional<ForceSearch> search(std::in_place, table, own, options, part.duration);
   const std::optional<std::size_t> odd =
-      may_leave_out ? search.odd_sensor() : std::optional<std::size_t>();
+      may_leave_out ? search->odd_sensor() : std::optional<std::size_t>();
   if (odd) {
     StructureRecord others = record;
     others.responses.erase(others.responses.begin() + static_cast<std::ptrdiff_t>(*odd));
@@ -50,7 +50,17 @@ StructureForce found_in(const StructureTable& table, const StructureRecord& reco
     found.left_out = odd;
     return found;
   }
-  StructureForce found = search.run(own);
+  // By modes that were refined the force may be seen to end earlier, and that part tells it better.
+  if (search->refine(own) && std::isnan(options.window)) {
+    const ActingPart shorter = acting_part(search->table(), record, options);
+    if (shorter.duration < 0.9 * part.duration) {
+      part = shorter;
+      own = part.of(record);
+      search.emplace(table, own, options, part.duration);
+      search->refine(own);
+    }
+  }
+  StructureForce found = search->run();
   found.window += static_cast<double>(part.first) / record.sample_rate;
   found.weak_until = part.weak_until;
   found.force.insert(found.force.begin(), part.first, 0.0);

@@ -30,6 +30,9 @@ struct StructureForceOptions {
   std::uint64_t seed = 1;
   /// The structure may have changed since its table was made: the modes are refined first.
   std::optional<StructureChange> change;
+  /// Where that is not stated and the sensors contradict the table (kChanged), one of the size that
+  /// the responses tell is allowed for.
+  bool may_have_changed = true;
 };
 
 struct StructureForce {

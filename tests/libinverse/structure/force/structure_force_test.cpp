@@ -100,8 +100,9 @@ StructureRecord record_of(const std::vector<std::size_t>& sensors,
 }
 
 StructureForce force_by(const std::vector<std::size_t>& sensors) {
-  return structure_force(table_of(sensors), record_of(sensors),
-                         {.shape = ForceShape::kSmooth, .window = 1.0, .draws = 2});
+  return structure_force(
+      table_of(sensors), record_of(sensors),
+      {.shape = ForceShape::kSmooth, .window = 1.0, .draws = 2, .may_have_changed = false});
 }
 
 // (K − 1)/K Σ (f_k − mean)² of the forces without one sensor each, as wide as Student's t of two
