@@ -77,9 +77,13 @@ nlohmann::ordered_json json_of(const InputPlace& place) {
   return result;
 }
 
-nlohmann::ordered_json error_json(ExitCode code, const std::vector<Complaint>& errors) {
+// verdict: of the run, which is the message where nothing else was complained of.
+nlohmann::ordered_json error_json(ExitCode code, const std::vector<Complaint>& errors,
+                                  const std::string& verdict) {
   nlohmann::ordered_json error = {{"kind", kind_of(code)}, {"exit_code", static_cast<int>(code)}};
-  error["message"] = errors.empty() ? std::string(meaning_of(code)) : message_of(errors.front());
+  error["message"] = !errors.empty()    ? message_of(errors.front())
+                     : !verdict.empty() ? verdict
+                                        : std::string(meaning_of(code));
   error["place"] = errors.empty() ? nlohmann::ordered_json() : json_of(errors.front().place);
   for (std::size_t i = 1; i < errors.size(); ++i) error["further"].push_back(message_of(errors[i]));
   return error;
@@ -92,7 +96,9 @@ void write_json_answer(ExitCode code) {
       answer.data.is_object() ? std::move(answer.data) : nlohmann::ordered_json::object();
   if (!answer.text.empty()) object["text"] = answer.text;
   if (!answer.warnings.empty()) object["warnings"] = answer.warnings;
-  if (code != ExitCode::kOk) object["error"] = error_json(code, answer.errors);
+  if (code != ExitCode::kOk) {
+    object["error"] = error_json(code, answer.errors, object.value("verdict", std::string()));
+  }
   write_out(json_text(object));
 }
 

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/config/help.hpp"
@@ -218,7 +219,11 @@ std::string file_for_record(const NewArguments& arguments) {
   RecordOptions other = record;
   other.right.turned = true;
   const ToldString turned = told_by(other);
-  if (turned.misfit < told.misfit && (turned.explained || !told.explained)) {
+  // What rings by itself is explained by strings of other pitches, too, of either sign.
+  const auto rank = [](const ToldString& string) {
+    return std::tuple(string.explained, string.explained && string.near_pitch, -string.misfit);
+  };
+  if (rank(turned) > rank(told)) {
     told = turned;
     record = other;
   }

@@ -121,7 +121,9 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
                  (out_ / kResolvedFile).string(),
                  format_mistakes(loaded_.document, loaded_.mistakes));
   list_ = dynamic_cast<const TaskExperiment*>(loaded_.experiment.get());
-  MODCAL_REQUIRE(list_ != nullptr, "{} holds a run of kind {}, which is no list of tasks",
+  MODCAL_REQUIRE(list_ != nullptr,
+                 "{0} holds a run of kind {1}, which is no list of tasks: its answer stands in "
+                 "{0}/answer.json, its report in {0}/report.html",
                  out_.string(), loaded_.kind);
   finished_.emplace(out_, provenance["program"].get<std::string>());
   outcomes_.emplace(stored_outcomes(*list_, *finished_, folder_));

@@ -248,7 +248,7 @@ std::string complaint_about_folder(const std::string& text) {
   if (!complaint_about_task(text).empty() || std::filesystem::exists(text)) return {};
   return fmt::format(
       "\"{0}\" is no folder but a number: the two are exchanged, the task comes last, as in modcal "
-      "replay out/mine {0}",
+      "replay out/table1 {0}",
       text);
 }
 

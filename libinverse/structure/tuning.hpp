@@ -208,6 +208,13 @@ constexpr double kLongestWeighted = 12.0;
 /// Halved: not tried.
 constexpr double kMostInstants = 4000.0;
 
+/// Instants of pulses up to which they are tried whatever the smooth force looks like.
+/// Source: that takes a second; 3500 take 90.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kFewInstants = 1000.0;
+
 /// Deviation of a mode's frequency from which it may be none of the structure's, in half-widths ζf.
 /// Source: 34 simulated structures of 2 to 25 modes: of 344 modes in the band 28 are none of
 /// theirs, of which 8 are told better than this, as are 305 of 316 true ones.

@@ -79,6 +79,7 @@ struct ToldString {
   double contact = 0.0;        ///< x_c/L, from the end of the left reaction [1]
   double misfit = std::numeric_limits<double>::infinity();  ///< as EndRelationFit's, up to 40 f₀
   bool explained = false;  ///< the reactions are those of this string
+  bool near_pitch = true;  ///< f₀ is the pitch, and not above or below it
   /// x_c/L of the string that serves nearly as well with the contact elsewhere, as of what rings by
   /// itself any does; none: the record tells its contact.
   std::optional<double> rival = {};

@@ -181,7 +181,8 @@ ToldString find_string(const EndRecord& record, std::optional<double> contact) {
   ToldString told = told_by(record, spectra, 0.96 * pitch, 1.04 * pitch, contact);
   if (told.explained) return told;
   // A string that slips out of step repeats itself after some periods, or nearly.
-  const ToldString other = told_by(record, spectra, 0.7 * pitch, 8.0 * pitch, contact);
+  ToldString other = told_by(record, spectra, 0.7 * pitch, 8.0 * pitch, contact);
+  other.near_pitch = false;
   return other.explained || !std::isfinite(told.misfit) ? other : told;
 }
 

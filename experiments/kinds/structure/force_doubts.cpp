@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "libinverse/structure/force/force_band.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -135,16 +136,6 @@ void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loa
                      "and the place of the contact with those of the table",
                      100.0 * *worst, name),
          result);
-}
-
-// Σf⁴ n/(Σf²)²: 3 of a Gaussian force, the inverse of the share of time in which one of blows acts.
-double peakedness(std::span<const double> force) {
-  double square = 0.0, fourth = 0.0;
-  for (const double f : force) {
-    square += f * f;
-    fourth += f * f * f * f;
-  }
-  return square > 0.0 ? fourth * static_cast<double>(force.size()) / (square * square) : 0.0;
 }
 
 // What was not tried, and what table and record do not tell.

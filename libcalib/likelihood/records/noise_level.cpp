@@ -44,12 +44,14 @@ NoiseBand NoiseBand::above(double top, double sample_rate, std::size_t samples) 
   if (kClearNoise * top <= band.low * sample_rate) return band;
   band.clear = false;
   band.low = std::max(band.low, kLineMargin * top / sample_rate);
-  MODCAL_REQUIRE(bins_of(band, samples).count() >= kFewestNoiseBins,
-                 "the noise cannot be read from {} samples at {:g} Hz with modes up to {:g} Hz: it "
-                 "takes {} bins between {:g} Hz and {:g} Hz. State "
-                 "noise_rms_1 and noise_rms_2, use fewer modes, or sample faster",
-                 samples, sample_rate, top, kFewestNoiseBins, band.low * sample_rate,
-                 band.high * sample_rate);
+  MODCAL_REQUIRE(
+      bins_of(band, samples).count() >= kFewestNoiseBins,
+      "the noise cannot be read from {} samples at {:g} Hz with modes up to {:g} Hz: it "
+      "takes {} bins between {:g} Hz and {:g} Hz. State "
+      "noise_rms_1 and noise_rms_2 (of a calibration in calibration.objective, beside type: "
+      "joint_likelihood; of an inversion in inversion.estimator), use fewer modes, or sample "
+      "faster",
+      samples, sample_rate, top, kFewestNoiseBins, band.low * sample_rate, band.high * sample_rate);
   return band;
 }
 

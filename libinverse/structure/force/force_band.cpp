@@ -71,6 +71,15 @@ double rise_towards_zero(const std::vector<double>& power, std::size_t first) {
   return low > 0.0 ? low / std::max(next, 1e-300) : 0.0;
 }
 
+double peakedness(std::span<const double> force) {
+  double square = 0.0, fourth = 0.0;
+  for (const double f : force) {
+    square += f * f;
+    fourth += f * f * f * f;
+  }
+  return square > 0.0 ? fourth * static_cast<double>(force.size()) / (square * square) : 0.0;
+}
+
 namespace {
 
 // Power A |s|^-2p exp(−(ω/ω_c)^k) + noise of the largest likelihood for what the bins show.

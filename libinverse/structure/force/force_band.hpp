@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "libinverse/structure/bin_evidence.hpp"
 
@@ -25,6 +26,10 @@ std::vector<double> power_found(const BinEvidence& evidence);
 /// least frequency, is that in the next so wide octave: 1 of white noise, 4 and more of a force
 /// whose mean or slow part stands below. NaN: a band too narrow to tell. first: of the band's bins.
 double rise_towards_zero(const std::vector<double>& power, std::size_t first);
+
+/// Σ f⁴ n/(Σ f²)²: 3 of a Gaussian force, the inverse of the share of time in which one of blows
+/// acts.
+double peakedness(std::span<const double> force);
 
 /// ln of the odds that the force is a push that sets in or is let go and no blow: Σ ln p of what
 /// the bins show of its power, exponential about A exp(−(ω/ω_c)^k)/|s|² and A exp(−(ω/ω_c)^k) and

@@ -72,7 +72,7 @@ StructureForce ForceSearch::run() {
   result_.predicted = predictions_of(spectra_, transfers_, variances_);
   const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNoSensor);
   find_power(evidence);
-  if (wants_pulses()) find_pulses(evidence);
+  if (wants_pulses(evidence)) find_pulses(evidence);
   const Eigen::VectorXd best = force_of(evidence);
   const Eigen::VectorXd own = variance_of(evidence);
   const Eigen::VectorXd drawn = by_models(best), left_out = by_sensors();
@@ -122,11 +122,16 @@ bool ForceSearch::refine(const StructureRecord& record) {
   return true;
 }
 
-bool ForceSearch::wants_pulses() {
+bool ForceSearch::wants_pulses(const BinEvidence& evidence) {
   if (options_.shape != ForceShape::kAuto) return options_.shape == ForceShape::kImpacts;
   const double instants = PulseTrain::instants_in(table_, rate(), result_.window);
   if (instants > kMostInstants) result_.untried = instants;
-  return result_.untried == 0.0;
+  if (instants <= kFewInstants) return true;
+  // Blows of a long window stand out of the smooth force, too: the others are not worth the search.
+  if (result_.untried > 0.0) return false;
+  const Eigen::VectorXd smooth = force_of(evidence);
+  return peakedness(std::span(smooth.data(), static_cast<std::size_t>(smooth.size()))) >
+         0.5 * kPeaked;
 }
 
 void ForceSearch::find_pulses(const BinEvidence& evidence) {

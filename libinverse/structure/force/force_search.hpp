@@ -47,7 +47,7 @@ class ForceSearch {
   Eigen::VectorXd state_widths(const InitialState& state) const;
   /// The force by another model, what rang fitted anew and off by what is not known of it.
   Eigen::VectorXd force_by(const DrawnModels& models, std::size_t draw) const;
-  bool wants_pulses();
+  bool wants_pulses(const BinEvidence& evidence);
   /// Pulses on a background of a share of the force's power: the share of largest evidence. All of
   /// it and no pulse is a smooth force.
   void find_pulses(const BinEvidence& evidence);

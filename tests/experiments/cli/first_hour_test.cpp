@@ -114,6 +114,12 @@ TEST_F(FirstHour, IsToldOfASearchThatWasCut) {
   EXPECT_NE(cut.code, 0);
   EXPECT_THAT(cut.out, HasSubstr("before it found anything: raise calibration.budget"));
   EXPECT_THAT(content_of(folder() / "out/mine/report.html"), Not(HasSubstr("All done")));
+  // For programs its verdict is the message, and what is no list says where its answer stands.
+  const Outcome data =
+      modcal("run mine.yaml --json --out data --set calibration.budget.evaluations=5");
+  EXPECT_THAT(data.out, Not(HasSubstr("nothing could be measured")));
+  EXPECT_THAT(data.out.substr(data.out.find("\"error\"")), HasSubstr("calibration.budget"));
+  EXPECT_THAT(modcal("status data").err, HasSubstr("its answer stands in data/answer.json"));
   // Between two of its stages, too: there is a value, of another record than the whole.
   EXPECT_NE(modcal("run mine.yaml --out later --set calibration.budget.evaluations=60").code, 0);
   const Outcome short_of = modcal(
@@ -121,6 +127,25 @@ TEST_F(FirstHour, IsToldOfASearchThatWasCut) {
       "parameters: {frequencies: none, law: true}, budget: {evaluations: 5}}'");
   EXPECT_THAT(short_of.out, HasSubstr("a better point may lie beyond; raise calibration.budget"));
   EXPECT_THAT(content_of(folder() / "short/report.html"), HasSubstr("Cut by its budget: "));
+}
+
+// With one sensor turned another pitch, .7 of this one, explains a sharp pluck a little better.
+TEST_F(FirstHour, ReadsThePitchOfAPluck) {
+  write("pluck.yaml",
+        "kind: simulate\n"
+        "scene:\n"
+        "  string: {length: 0.33 m, linear_density: 3.1 g/m, fundamental: 196 Hz, inharmonicity: "
+        "1e-4, modes: 40, damping: {type: constant, ratio: 1e-3}}\n"
+        "  bow: {position: 40 mm, velocity: 0 m/s, normal_force: 0 N}\n"
+        "  initial: {type: pluck, position: 70 mm, displacement: 1 mm}\n"
+        "  duration: 1 s\n"
+        "measurement: {sample_rate: 51.2 kHz, noise_level: 1 %}\n"
+        "files: [csv]\n");
+  ASSERT_EQ(modcal("run pluck.yaml").code, 0);
+  const Outcome written = modcal("new calibrate out/pluck/signals.csv --length '0.33 m'");
+  EXPECT_THAT(written.out, HasSubstr("fundamental: 196."));
+  EXPECT_THAT(written.out, HasSubstr("right: {channel: \"R2\"}"));
+  EXPECT_THAT(written.out, HasSubstr("State bow.position"));
 }
 
 TEST_F(FirstHour, NeedNotKnowHowASensorWasMounted) {
