@@ -227,17 +227,28 @@ Fitted fit_of(const FitModesOptions& options, const StudyContext& context) {
   return fitted;
 }
 
-void warn_of_stand_ins(const StrikeFit& fit, StudyResult& result) {
-  if (fit.stand_ins.empty()) return;
+std::string frequencies_of(const std::vector<std::size_t>& modes, const StrikeFit& fit) {
   std::vector<std::string> some;
-  for (const std::size_t n : fit.stand_ins) {
-    some.push_back(fmt::format("{:.5g}", fit.table.frequency(n)));
+  for (const std::size_t n : modes) some.push_back(fmt::format("{:.5g}", fit.table.frequency(n)));
+  return fmt::format("{}", fmt::join(some, ", "));
+}
+
+void warn_of_modes(const StrikeFit& fit, StudyResult& result) {
+  std::vector<std::size_t> disputed;
+  std::ranges::set_difference(fit.disputed, fit.stand_ins, std::back_inserter(disputed));
+  if (!disputed.empty()) {
+    result.warn(fmt::format(
+        "the sensors do not agree on the modes at {} Hz, as where two that stand close together "
+        "are taken for one: their deviations are wide by that; a longer record, contour: with a "
+        "smaller one, or a sensor elsewhere may part them",
+        frequencies_of(disputed, fit)));
   }
+  if (fit.stand_ins.empty()) return;
   result.warn(fmt::format(
       "modes at {} Hz may be none of the structure's, but stand for what no other mode explains: "
       "they lie outside of the band, or their frequency is told to no better than a third of their "
       "half-width",
-      fmt::join(some, ", ")));
+      frequencies_of(fit.stand_ins, fit)));
 }
 
 }  // namespace
@@ -261,7 +272,7 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
     result.answer = why;
     result.warn(why);
   }
-  warn_of_stand_ins(fit, result);
+  warn_of_modes(fit, result);
   if (!context.numbers_alone) {
     result.blocks.emplace_back(responses_figure(fit));
   }

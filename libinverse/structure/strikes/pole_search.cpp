@@ -234,6 +234,18 @@ Eigen::MatrixXd PoleSearch::covariance(const std::vector<Eigen::MatrixXd>& slope
   return solver.solve(half.transpose());
 }
 
+Eigen::VectorXd PoleSearch::variance_between(const std::vector<Eigen::MatrixXd>& slopes,
+                                             const std::vector<SensorFit>& fits) const {
+  Eigen::MatrixXd information = products_of(slopes.front());
+  for (std::size_t k = 1; k < sensors(); ++k) information += products_of(slopes[k]);
+  const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(information.rows());
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    sum += solver.solve(slopes[k].transpose() * fits[k].residual).cwiseAbs2();
+  }
+  return sum;
+}
+
 double PoleSearch::fit(std::vector<ModalPole>& poles, int steps) const {
   double here = cost(poles), damping = 1e-3;
   for (int step = 0; step < steps; ++step) {

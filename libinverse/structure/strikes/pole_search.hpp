@@ -63,6 +63,11 @@ class PoleSearch {
   Eigen::MatrixXd covariance(const std::vector<Eigen::MatrixXd>& slopes,
                              const std::vector<Eigen::VectorXd>& variances,
                              std::span<const double> noise, const ForceNoise& force) const;
+  /// Σ_k (A⁻¹ J_kᵀ r_k)², how far the sensors pull ln f and ln ζ of each mode apart (the sandwich
+  /// with a cluster a sensor; Liang and Zeger, 1986). What is one mode pulls them no further than
+  /// its residuals have it; two that are taken for one have another share in every sensor.
+  Eigen::VectorXd variance_between(const std::vector<Eigen::MatrixXd>& slopes,
+                                   const std::vector<SensorFit>& fits) const;
   /// Static terms of a sensor: powers of s besides its own, −2 and 0 (an acceleration, a velocity)
   /// or −2 and 0 (a displacement).
   static constexpr Eigen::Index kStatics = 2;

@@ -70,8 +70,7 @@ class Fit {
     double least = std::numeric_limits<double>::infinity();
     while (poles.size() < options_.most_modes && parameters(poles.size() + 1) < 0.75 * numbers()) {
       poles.push_back(search.best_addition(poles));
-      const double cost = search.fit(poles, 3);
-      const double told = parameters(poles.size());
+      const double cost = search.fit(poles, 3), told = parameters(poles.size());
       const double criterion =
           numbers() * std::log(cost / counted_twice() / numbers()) + told * std::log(numbers());
       result_.steps.push_back({.modes = poles.size(),
@@ -85,8 +84,7 @@ class Fit {
                    "the record tells {:.3g} numbers in its band, a mode takes {:g}: state a wider "
                    "band or a smaller contour",
                    numbers(), parameters(1));
-    const double cost = search.fit(best, 30);
-    result_.misfit = cost / counted_twice() / (numbers() - parameters(best.size()));
+    result_.misfit = search.fit(best, 30) / counted_twice() / (numbers() - parameters(best.size()));
     tell(search, best);
     return best;
   }
@@ -97,15 +95,13 @@ class Fit {
   }
   std::size_t bins() const {
     std::size_t sum = 0;
-    for (const FittedStrike& strike : result_.strikes) sum += strike.spectra.count();
+    for (const auto& strike : result_.strikes) sum += strike.spectra.count();
     return sum;
   }
   // Of records of several lengths the most, whichever stands first.
   double counted_twice() const {
     double most = 1.0;
-    for (const FittedStrike& strike : result_.strikes) {
-      most = std::max(most, strike.spectra.correlated());
-    }
+    for (const auto& strike : result_.strikes) most = std::max(most, strike.spectra.correlated());
     return most;
   }
   double parameters(std::size_t modes) const {
@@ -115,7 +111,6 @@ class Fit {
 
   void tell(const PoleSearch& search, const std::vector<ModalPole>& poles) {
     StructureTable& table = result_.table;
-    const std::size_t modes = poles.size();
     result_.residuals.clear();
     for (FittedStrike& strike : result_.strikes) strike.modeled.clear(), strike.residuals.clear();
     table.scatters.clear();
@@ -125,13 +120,13 @@ class Fit {
     const std::vector<SensorFit> fits = search.at(poles);
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
       const Eigen::VectorXd x = fits[k].amplitudes.cwiseQuotient(fits[k].norms);
-      for (std::size_t n = 0; n < modes; ++n) {
+      for (std::size_t n = 0; n < poles.size(); ++n) {
         const double scale = std::pow(poles[n].omega, 2 - power_of_s(kinds_[k]));
         table.model.constants.push_back(scale * x[static_cast<Index>(2 * n)]);
         table.model.quadrature.push_back(scale * x[static_cast<Index>(2 * n + 1)]);
       }
-      const auto first = static_cast<Index>(2 * modes);
-      table.model.residuals.push_back({.below = x[first], .constant = x[first + 1]});
+      table.model.residuals.push_back(
+          {.below = x[2 * std::ssize(poles)], .constant = x[2 * std::ssize(poles) + 1]});
       tell_rest(k, fits[k]);
     }
   }
@@ -168,19 +163,24 @@ class Fit {
       }
     }
     const Eigen::MatrixXd covariance = search.covariance(slopes, variances, noise, force);
+    const Eigen::VectorXd between = search.variance_between(slopes, fits);
     for (std::size_t n = 0; n < poles.size(); ++n) {
       const auto i = static_cast<Index>(2 * n);
       MODCAL_REQUIRE(covariance(i, i) >= 0.0 && covariance(i + 1, i + 1) >= 0.0,
                      "nothing tells the mode at {:g} Hz from the others: state a narrower band or "
                      "fewer modes",
                      table.frequency(n));
-      table.frequency_deviations.push_back(std::sqrt(covariance(i, i)));
-      table.damping_deviations.push_back(std::sqrt(covariance(i + 1, i + 1)));
+      Eigen::Vector2d variance = covariance.diagonal().segment<2>(i);
+      if (kinds_.size() >= kFewestThatPull && between[i] > variance[0]) {
+        const double wide = student_quantile(kinds_.size() - 1) / student_quantile(0);
+        variance = variance.cwiseMax(wide * wide * between.segment<2>(i));
+        result_.disputed.push_back(n);
+      }
+      table.frequency_deviations.push_back(std::sqrt(variance[0]));
+      table.damping_deviations.push_back(std::sqrt(variance[1]));
       const double f = table.frequency(n);
       const bool is_told = table.frequency_deviations[n] <= kToldWidth * poles[n].zeta;
-      if (f < table.low || f > table.high || !is_told) {
-        result_.stand_ins.push_back(n);
-      }
+      if (f < table.low || f > table.high || !is_told) result_.stand_ins.push_back(n);
     }
   }
 

@@ -43,6 +43,9 @@ struct StrikeFit {
   /// Modes that may be none of the structure's, by their place: outside of the band, or told to no
   /// better than kToldWidth. They stand for many, or for what leaks from line to line.
   std::vector<std::size_t> stand_ins;
+  /// Modes that the sensors pull apart (PoleSearch::variance_between()), as two that stand so close
+  /// that they are taken for one. Their deviations hold that.
+  std::vector<std::size_t> disputed;
   /// By how much ln f and ln ζ of a mode differ from strike to strike, rms; the median of the
   /// modes. NaN: one strike.
   double frequency_scatter = std::numeric_limits<double>::quiet_NaN();

@@ -156,12 +156,13 @@ std::vector<Signal> lines_of_force(const Lines& lines) {
 
 class CalibrateLines : public CalibrateRecords {
  protected:
-  StudyResult calibrated(const Lines& lines, const std::string& modes) {
+  StudyResult calibrated(const Lines& lines, const std::string& modes,
+                         const std::string& position = "30 mm") {
     write("stroke.csv", lines_of_force(lines));
     const LoadedExperiment loaded = load_experiment(parse_yaml(
         "kind: calibrate\nrecord: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}}\n"
         "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196.5 Hz, modes: " +
-            modes + "}\nbow: {position: 30 mm}\n",
+            modes + "}\nbow: {position: " + position + "}\n",
         (folder() / "experiment.yaml").string()));
     EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
     return loaded.experiment->run(context());
@@ -176,6 +177,10 @@ TEST_F(CalibrateLines, TakeNoMoreModesThanAreTold) {
   EXPECT_THAT(taken.summary, testing::HasSubstr("modes taken (modes: auto): none above mode"));
   const json found = calibration_of(taken);
   EXPECT_LT(found["modes"].size(), 40u);
+  // Two of them are identified: enough where x_c is found where it was stated.
+  const StudyResult elsewhere = calibrated({}, "auto", "38 mm");
+  EXPECT_EQ(elsewhere.status, report::Status::kFailed);
+  EXPECT_THAT(elsewhere.answer, testing::HasSubstr("the record tells 2 of its modes, too few"));
   for (const json& parameter : found["parameters"]) {
     if (parameter["name"] == "f0") {
       EXPECT_NEAR(parameter["final"].get<double>(), 196.0, 4.0 * parameter["sd"].get<double>());

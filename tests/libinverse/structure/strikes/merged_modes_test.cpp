@@ -1,0 +1,59 @@
+// Two modes that stand closer together than they are wide, taken for one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "libinverse/structure/strikes/strike_fit.hpp"
+#include "libsim/base/random.hpp"
+
+namespace modcal::merged_modes_test {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr std::size_t kSensors = 3;
+
+// Lines of 2 % noise of a mode at 110 Hz and a pair at 173 Hz, 2 Hz apart: 1.2 half-widths.
+MeasuredFunctions lines_of(const double (&pair)[kSensors][2]) {
+  const std::vector<ModalPole> poles = {
+      {kTurn * 110.0, 0.02}, {kTurn * 172.0, 0.01}, {kTurn * 174.0, 0.01}};
+  const FrequencyGrid grid{.spacing = kTurn * 0.5, .bins = 601};
+  std::vector<double> normal(2 * kSensors * grid.bins);
+  fill_standard_normal(StreamKey(7).with("lines"), normal);
+  std::vector<std::vector<Complex>> response(kSensors, std::vector<Complex>(grid.bins));
+  for (std::size_t k = 0; k < kSensors; ++k) {
+    for (std::size_t m = 0; m < grid.bins; ++m) {
+      const Complex s = grid.s(m);
+      for (std::size_t n = 0; n < poles.size(); ++n) {
+        const double constant = n == 0 ? 1.0 : pair[k][n - 1];
+        const auto& [omega, zeta] = poles[n];
+        response[k][m] += constant / (s * s + 2.0 * zeta * omega * s + omega * omega);
+      }
+      const double* z = &normal[2 * (k * grid.bins + m)];
+      response[k][m] *= 1.0 + 0.02 / std::sqrt(2.0) * Complex(z[0], z[1]);
+    }
+  }
+  return {.grid = grid,
+          .sensors = std::vector<SensorKind>(kSensors, SensorKind::kDisplacement),
+          .sessions = {response}};
+}
+
+StrikeFit fit_of(const double (&pair)[kSensors][2]) {
+  return fit_response(lines_of(pair), {.low = 61.0, .high = 239.0, .most_modes = 2});
+}
+
+// One pole for both: it lies between, and the sensors, which see other shares of the two, pull it
+// apart by more than what is left of them expects.
+TEST(MergedModes, AreDoubtedWhereTheSensorsPullThemApart) {
+  const StrikeFit merged = fit_of({{1.0, 0.2}, {0.3, 0.9}, {0.8, -0.1}});
+  ASSERT_EQ(merged.table.model.poles.size(), 2u);
+  EXPECT_EQ(merged.disputed, std::vector<std::size_t>{1});
+  const double found = merged.table.frequency(1);
+  const double deviation = found * merged.table.frequency_deviations[1];
+  EXPECT_LT(std::min(std::abs(found - 172.0), std::abs(found - 174.0)), 2.0 * deviation);
+  // One mode alone.
+  EXPECT_TRUE(fit_of({{1.0, 0.0}, {0.3, 0.0}, {0.8, 0.0}}).disputed.empty());
+}
+
+}  // namespace
+}  // namespace modcal::merged_modes_test
