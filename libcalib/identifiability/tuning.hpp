@@ -147,6 +147,15 @@ constexpr std::size_t kNeighborBeside = 2;
 /// Halved: not tried; Student's quantile of two draws is 4.3.
 constexpr std::size_t kModelsDrawn = 4;
 
+/// How far beside x_c as stated, over L, another search starts where the ends do not tell it, and
+/// over the deviation of both how far apart they may end.
+/// Source: a stroke whose force has lines of wandering phases, 10 % of noise: from 20 to 60 mm
+/// seven starts are accepted at six places, .2 to 2 mm of deviation each, of which one is right.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kContactShift = 0.02, kContactsApart = 4.0;
+
 /// Least number of modes that a record tells by itself, where nothing else holds the string; one
 /// more where x_c is found elsewhere than stated.
 /// Source: 96 strokes of benchmarks/truth of .1 to .4 s, four strings, exponential and thermal

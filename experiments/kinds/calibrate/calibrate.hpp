@@ -149,6 +149,7 @@ struct CalibrationOutcome {
   CalibrationResult result;
   std::optional<StiffStringFit> law;  ///< where blind modes were filled
   std::string start;  ///< where the record told another start than the one stated, and which
+  bool contact_untold = false;           ///< the ends do not tell x_c: it started as stated
   std::vector<double> true_frequencies;  ///< [Hz]; empty for a record
 
   /// Whether ζ_n of some mode was free.

@@ -59,6 +59,7 @@ void start_from_record(const Observation& observation, const CalibrationOptions&
       "Started from the string that the ends of the record tell: f0 {:.6g} Hz, B {}, x_c "
       "{:.4g} mm.",
       told->fundamental, inharmonicity_text(told->inharmonicity), 1e3 * contact);
+  outcome.contact_untold = told->rival && calibration.parameters.contact;
   if (told->rival) {
     outcome.start += fmt::format(
         " The ends do not tell x_c, as of a pluck or of what rings by itself: it starts as stated, "

@@ -34,6 +34,7 @@ struct Found {
   const Sensor& sensors;
   const std::vector<SideIdentification>& sides;
   double ringing_misfit;
+  std::string another_contact;
   const ContinuationResult* estimate() const { return outcome.result.continuation.get(); }
 };
 
@@ -120,17 +121,48 @@ std::string too_few_modes(const CalibrateOptions& options, const Found& found) {
   if (!is_open || !estimate || !estimate->frequencies_free) return {};
   const auto identified =
       std::ranges::count(estimate->modes, ModeSource::kIdentified, &ModeVerdict::source);
-  // One more where x_c is not where it was stated, which would be one thing more that is known.
-  constexpr double kBeside = 0.02;
+  // An x_c that is held is one thing more that is known; one that is found elsewhere than stated
+  // contradicts one.
   const double beside = std::abs(found.outcome.refined.contact - found.measured.contact);
-  const bool is_elsewhere = beside > kBeside * found.measured.basis.length;
-  if (identified >= kLeastIdentified + (is_elsewhere ? 1 : 0)) return {};
+  const int more = !options.calibration.parameters.contact                ? -1
+                   : beside > kContactShift * found.measured.basis.length ? 1
+                                                                          : 0;
+  if (identified >= kLeastIdentified + more) return {};
   return fmt::format(
       "the record tells {} of its modes, too few for a string of which nothing else is known: f0, "
       "B and x_c may be those of another minimum; record for longer, with less noise or while the "
       "string sounds, or state priors "
       "(calibration.parameters.priors)",
       identified == 0 ? "none" : fmt::format("{}", identified));
+}
+
+// Where the ends do not tell x_c, every few millimeters may have a minimum, whose deviation knows
+// nothing of the others: what starts beside the place stated is to come to the same one.
+std::string another_contact(const CalibrateOptions& options, ObservedRecords observed,
+                            const StudyContext& context, const CalibrationOutcome& outcome) {
+  const ContinuationResult* first = outcome.result.continuation.get();
+  if (!outcome.contact_untold || !first || !first->right) return {};
+  Observation& stroke = observed.strokes.front();
+  const double stated = stroke.contact, length = stroke.basis.length;
+  for (const double shift : {-kContactShift, kContactShift}) {
+    stroke.contact = stated + shift * length;
+    if (!(stroke.contact > 0.0 && stroke.contact < length)) continue;
+    const CalibrationOutcome other =
+        calibrate_strokes(options, observed.strokes, polling_clock(context), observed.plucks);
+    const ContinuationResult* second = other.result.continuation.get();
+    if (!second || !second->right) continue;
+    const double apart = std::abs(other.refined.contact - outcome.refined.contact);
+    const double deviation = std::hypot(first->contact_deviation, second->contact_deviation);
+    if (apart < kContactsApart * deviation) continue;
+    return fmt::format(
+        "the ends do not tell x_c in this record, and from {:.4g} mm the search comes to {:.4g} +- "
+        "{:.2g} mm, from {:.4g} mm to {:.4g} +- {:.2g} mm, neither of which the data contradict: "
+        "hold it where it is known (calibration.parameters.contact: false), or record a stroke "
+        "that the string answers between its modes, too",
+        1e3 * stated, 1e3 * outcome.refined.contact, 1.96e3 * first->contact_deviation,
+        1e3 * stroke.contact, 1e3 * other.refined.contact, 1.96e3 * second->contact_deviation);
+  }
+  return {};
 }
 
 // Of a record in which nothing drives the string: what tells x_c is the force.
@@ -149,8 +181,8 @@ void add_answer(const CalibrateOptions& options, const InvertOptions& shown, con
                 StudyResult& result) {
   add_calibration_summary(found.outcome, result);
   add_calibration_warnings(found.outcome, result);
-  for (const std::string& reason :
-       {too_many_modes(found), no_force(found), too_few_modes(options, found)}) {
+  for (const std::string& reason : {too_many_modes(found), no_force(found),
+                                    too_few_modes(options, found), found.another_contact}) {
     if (!reason.empty()) reject_calibration(reason, result);
   }
   if (const ContinuationResult* estimate = found.estimate()) {
@@ -252,8 +284,13 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
       *this, measured, outcome, inversion_outputs(shown.figures, shown.wants_all()), context.stop);
 
   StudyResult result;
-  const Found found{outcome,       measured,    force.observation,
-                    force.sensors, force.sides, force.ringing_misfit};
+  const Found found{outcome,
+                    measured,
+                    force.observation,
+                    force.sensors,
+                    force.sides,
+                    force.ringing_misfit,
+                    another_contact(*this, observed, context, outcome)};
   add_answer(*this, shown, found, result);
   add_account(*this, shown, found, result);
   return result;
