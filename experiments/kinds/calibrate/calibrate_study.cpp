@@ -150,7 +150,7 @@ std::string another_contact(const CalibrateOptions& options, ObservedRecords obs
     const CalibrationOutcome other =
         calibrate_strokes(options, observed.strokes, polling_clock(context), observed.plucks);
     const ContinuationResult* second = other.result.continuation.get();
-    if (!second || !second->right) continue;
+    if (!second || !second->right || !held_back(other.result).empty()) continue;
     const double apart = std::abs(other.refined.contact - outcome.refined.contact);
     const double deviation = std::hypot(first->contact_deviation, second->contact_deviation);
     if (apart < kContactsApart * deviation) continue;
