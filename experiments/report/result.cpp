@@ -101,7 +101,10 @@ void JsonReader::value(const ResultField& field, Value held) {
   } else if (number && (*found == "inf" || *found == "-inf")) {
     **number = *found == "inf" ? kInfinity : -kInfinity;
   } else if (auto* const* whole = std::get_if<std::int64_t*>(&held)) {
-    // A fraction, or a number beyond 64 bits, is no count: this throws.
+    // A fraction, or a number beyond 63 bits, is no count: this throws.
+    if (found->is_number_unsigned() && found->get<std::uint64_t>() >> 63 != 0) {
+      throw Json::type_error::create(302, "a count is beyond 63 bits", found);
+    }
     **whole = found->get_ref<const std::int64_t&>();
   } else {
     std::visit([found](auto* one) { found->get_to(*one); }, held);

@@ -205,19 +205,6 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
 
 }  // namespace
 
-double BlindFit::surprise(Index i) const {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  return told[i] > 0.5 ? change[i] / expected[i] : kNan;
-}
-
-ModalModel BlindFit::drawn(std::span<const double> normal) const {
-  MODCAL_REQUIRE(std::ssize(normal) == change.size(), "{} normal numbers for {} unknowns",
-                 normal.size(), change.size());
-  const Eigen::Map<const Eigen::VectorXd> standard(normal.data(), change.size());
-  const Eigen::VectorXd step = root * standard;
-  return moved_by(model, step);
-}
-
 BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
                      const BinVariances& variances, const StructureChange& change, bool at_rest,
                      const Eigen::VectorXd& start_at) {
@@ -268,7 +255,7 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
     }
     const auto spectra = ContourSpectra::of(part, contour, table.low, table.high);
     const BinVariances variances = variances_beside(refined, spectra, fit, contour == before);
-    const double least_gain = is_settled ? kLeastGain : kLeastGainOnTheWay;
+    const double least_gain = is_settled || pass == 15 ? kLeastGain : kLeastGainOnTheWay;
     fit = fit_with(prior_of(table, allowed), table.model, spectra, variances, ends && at_rest,
                    fit.change, least_gain);
     fit.allowed = allowed;

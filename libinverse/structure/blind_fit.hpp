@@ -31,6 +31,9 @@ struct BlindFit {
   /// θ_i over what the prior expects of it, ~ N(0, 1) where that is right; NaN: told by less than a
   /// half.
   double surprise(Eigen::Index i) const;
+  /// By how much more than the others every sensor reads all modes, the mean of Re d_kn weighted by
+  /// told_kn/sd_kn², less that of all sensors; 0: constants are known.
+  std::vector<double> gains() const;
   /// A model as the data allow it: θ moved by covariance^½ times standard normal numbers, one an
   /// unknown.
   ModalModel drawn(std::span<const double> normal) const;

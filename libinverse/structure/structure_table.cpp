@@ -83,11 +83,10 @@ StructureChange StructureChange::open() {
   return change;
 }
 
-bool StructureChange::is_at_bound() const {
-  const StructureChange usual;
-  constexpr double rounding = 1.0 - 1e-9;
-  return is_found && (frequency >= rounding * kMostChange * usual.frequency ||
-                      residue >= rounding * kMostChange * usual.residue);
+bool StructureChange::is_at_bound(double StructureChange::*size) const {
+  // The last step of the search may have been a tenth.
+  constexpr double next_to = 0.85;
+  return is_found && this->*size >= next_to * kMostChange * (StructureChange().*size);
 }
 
 double modal_power(const ModalModel& model, std::size_t pair, Complex s) {

@@ -62,8 +62,8 @@ struct StructureChange {
 
   /// One whose size is found.
   static StructureChange open();
-  /// A size that is found has reached the most that it may: what differs is another structure.
-  bool is_at_bound() const;
+  /// A size that is found is next to the most that it may be: what differs is another structure.
+  bool is_at_bound(double StructureChange::*size) const;
 };
 
 /// With imaginary parts of the constants, 0 where they are not stated.

@@ -138,17 +138,17 @@ std::string too_few_modes(const CalibrateOptions& options, const Found& found) {
 
 // Where the ends do not tell x_c, every few millimeters may have a minimum, whose deviation knows
 // nothing of the others: what starts beside the place stated is to come to the same one.
-std::string another_contact(const CalibrateOptions& options, ObservedRecords observed,
+std::string another_contact(const CalibrateOptions& options, const ObservedRecords& observed,
                             const StudyContext& context, const CalibrationOutcome& outcome) {
   const ContinuationResult* first = outcome.result.continuation.get();
-  if (!outcome.contact_untold || !first || !first->right) return {};
-  Observation& stroke = observed.strokes.front();
+  const bool is_alone = observed.strokes.size() == 1 && observed.plucks.empty();
+  if (!outcome.contact_untold || !is_alone || !first || !first->right) return {};
+  Observation stroke = observed.strokes.front();
   const double stated = stroke.contact, length = stroke.basis.length;
   for (const double shift : {-kContactShift, kContactShift}) {
     stroke.contact = stated + shift * length;
     if (!(stroke.contact > 0.0 && stroke.contact < length)) continue;
-    const CalibrationOutcome other =
-        calibrate_strokes(options, observed.strokes, polling_clock(context), observed.plucks);
+    const CalibrationOutcome other = calibrate_observation(options, stroke, polling_clock(context));
     const ContinuationResult* second = other.result.continuation.get();
     if (!second || !second->right || !held_back(other.result).empty()) continue;
     const double apart = std::abs(other.refined.contact - outcome.refined.contact);

@@ -93,15 +93,29 @@ void doubt_begin(const StructureForce& found, const LoadedStructureRecord& loade
 }
 
 // A structure changes little; what would have to change it all is another one, or another place.
-bool doubt_change(const StructureForce& found, StudyResult& result) {
-  if (!found.refined || !found.refined->allowed.is_at_bound()) return false;
+bool doubt_change(const StructureForce& found, const LoadedStructureRecord& loaded,
+                  StudyResult& result) {
+  if (!found.refined || !found.refined->allowed.is_found) return false;
   const StructureChange& change = found.refined->allowed;
-  reject(fmt::format(
-             "rejected: no force explains the responses together, unless the structure has changed "
-             "by {:.2g} % and more in its frequencies, or its modal constants by {:.2g} %: compare "
-             "order, sign, unit and delay of the channels and the place of the contact with those "
-             "of the table; where it has changed so much, fit its modes again",
-             100.0 * change.frequency, 100.0 * change.residue),
+  std::string what;
+  const std::vector<double> gains = found.refined->gains();
+  const auto farthest = std::ranges::max_element(gains, {}, [](double g) { return std::abs(g); });
+  if (std::abs(*farthest) > kOtherGain) {
+    what = fmt::format("{} reads {:.3g} times what the others tell",
+                       loaded.names[static_cast<std::size_t>(farthest - gains.begin())],
+                       1.0 + *farthest);
+  } else if (change.is_at_bound(&StructureChange::residue)) {
+    what = fmt::format("modal constants have changed by {:.2g} % and more", 100.0 * change.residue);
+  } else if (change.is_at_bound(&StructureChange::frequency)) {
+    what = fmt::format("frequencies have changed by {:.2g} % and more", 100.0 * change.frequency);
+  } else {
+    return false;
+  }
+  reject(fmt::format("rejected: no force explains the responses together, unless {}: compare "
+                     "order, sign, gain, unit and delay of the channels and the place of the "
+                     "contact with those of the table; where it is the structure, fit its modes "
+                     "again",
+                     what),
          result);
   return true;
 }
@@ -110,7 +124,7 @@ bool doubt_change(const StructureForce& found, StudyResult& result) {
 void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loaded,
                    StudyResult& result) {
   if (found.told < 1.0) return;  // sensors that hear nothing contradict nobody
-  if (doubt_change(found, result)) return;
+  if (doubt_change(found, loaded, result)) return;
   const auto worst = std::ranges::max_element(found.sensor_left);
   const double power = contradiction_of(found.sensor_left);
   if (power < kContradiction * kContradiction) return;
@@ -148,7 +162,8 @@ void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loa
         "channels are not those of the table",
         result);
   }
-  if (found.untried > 0.0 && peakedness(found.force) > kPeaked) {
+  if (found.untried > 0.0 && peakedness(Eigen::Map<const Eigen::VectorXd>(
+                                 found.force.data(), std::ssize(found.force))) > kPeaked) {
     const double part = found.window * kMostInstants / found.untried;
     reject(
         fmt::format(
@@ -158,6 +173,11 @@ void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loa
             "with record.start at a quiet instant behind it",
             found.window, found.untried, kMostInstants, 0.9 * part),
         result);
+  } else if (found.untried > 0.0 && found.untried <= kMostInstants) {
+    result.warn(fmt::format(
+        "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, and the "
+        "force does not stand in peaks; where it is one of impacts, state shape: impacts",
+        found.window, found.untried));
   } else if (found.untried > 0.0) {
     result.warn(fmt::format(
         "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "

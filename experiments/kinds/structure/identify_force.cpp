@@ -101,10 +101,12 @@ void IdentifyForceOptions::visit_keys(OptionVisitor& visitor) {
           "responses in the order of the table's sensors; a force is only "
           "compared with",
           {.required = true}, record);
-  visitor("shape",
-          "impacts: pulses of the table's shape at few instants; smooth: a force that never stops; "
-          "auto: the one of larger evidence; smooth where the window has more than 4000 instants",
-          {.choices = {"auto", "impacts", "smooth"}}, shape);
+  visitor(
+      "shape",
+      "impacts: pulses of the table's shape at few instants; smooth: a force that never stops; "
+      "auto: the one of larger evidence; smooth where the window has more than 4000 instants, or "
+      "1000 and the force does not stand in peaks",
+      {.choices = {"auto", "impacts", "smooth"}}, shape);
   visitor("non_negative", "pulses that only press", non_negative);
   visitor(
       "window",
@@ -119,8 +121,7 @@ void IdentifyForceOptions::visit_keys(OptionVisitor& visitor) {
       "responses first, without their force; needs two sensors and more. Where it is not stated "
       "and the sensors contradict the table, a change of the size that they tell is allowed for",
       refines, change);
-  visitor("unchanged", "the structure is that of its table, whatever the sensors contradict",
-          unchanged);
+  visitor("unchanged", "the structure is that of its table, whatever the sensors say", unchanged);
   visitor("draws", "models drawn from the table's deviations for the band",
           {.range = Range::closed(2.0, 1000.0)}, draws);
   visitor("write_sound", "write the force as a sound file as well, identified.wav: 1.0 is 1 N",
@@ -243,7 +244,7 @@ StructureForceOptions IdentifyForceOptions::force_options(
           .draws = static_cast<std::size_t>(draws),
           .seed = static_cast<std::uint64_t>(seed),
           .change = refines ? std::optional<StructureChange>(change) : std::nullopt,
-          .may_have_changed = !unchanged};
+          .may_have_changed = !unchanged && other_places.empty()};
 }
 
 StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_first) const {

@@ -128,9 +128,14 @@ std::vector<std::string> RefinedModes::doubts() const {
   }
   for (Index i = frequency_of(modes()); i < fit.change.size(); ++i) constants.add(fit.surprise(i));
   std::vector<std::string> texts;
-  if (frequencies.contradict()) texts.push_back(frequencies.text("frequencies", "frequency"));
-  if (dampings.contradict()) texts.push_back(dampings.text("damping ratios", "damping"));
-  if (constants.contradict()) texts.push_back(constants.text("modal constants", "residue"));
+  // Sizes that were found are no statement that could be contradicted.
+  const bool is_stated = !fit.allowed.is_found;
+  if (is_stated && frequencies.contradict())
+    texts.push_back(frequencies.text("frequencies", "frequency"));
+  if (is_stated && dampings.contradict())
+    texts.push_back(dampings.text("damping ratios", "damping"));
+  if (is_stated && constants.contradict())
+    texts.push_back(constants.text("modal constants", "residue"));
   if (!untold.empty()) {
     texts.push_back(
         fmt::format("the responses do not tell the frequencies of {} of {} modes, which stay the "

@@ -71,13 +71,9 @@ double rise_towards_zero(const std::vector<double>& power, std::size_t first) {
   return low > 0.0 ? low / std::max(next, 1e-300) : 0.0;
 }
 
-double peakedness(std::span<const double> force) {
-  double square = 0.0, fourth = 0.0;
-  for (const double f : force) {
-    square += f * f;
-    fourth += f * f * f * f;
-  }
-  return square > 0.0 ? fourth * static_cast<double>(force.size()) / (square * square) : 0.0;
+double peakedness(const Eigen::Ref<const Eigen::VectorXd>& force) {
+  const double square = force.array().square().mean();
+  return square > 0.0 ? force.array().pow(4).mean() / (square * square) : 0.0;
 }
 
 namespace {

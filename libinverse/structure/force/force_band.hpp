@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 
 #include "libinverse/structure/bin_evidence.hpp"
 
@@ -29,7 +28,7 @@ double rise_towards_zero(const std::vector<double>& power, std::size_t first);
 
 /// Σ f⁴ n/(Σ f²)²: 3 of a Gaussian force, the inverse of the share of time in which one of blows
 /// acts.
-double peakedness(std::span<const double> force);
+double peakedness(const Eigen::Ref<const Eigen::VectorXd>& force);
 
 /// ln of the odds that the force is a push that sets in or is let go and no blow: Σ ln p of what
 /// the bins show of its power, exponential about A exp(−(ω/ω_c)^k)/|s|² and A exp(−(ω/ω_c)^k) and

@@ -102,17 +102,17 @@ std::optional<StructureChange> ForceSearch::change_wanted() const {
   if (!(left > kChanged * kChanged && variances_.misfit > kBeyond * kBeyond)) return {};
   if (power_told(evidence_of(spectra_, transfers_, variances_, kNoSensor)) < 1.0) return {};
   // One sensor alone is off, which is said by name.
-  if (left >= kContradiction * kContradiction &&
-      odd_one_out(predictions_of(spectra_, transfers_, variances_))) {
-    return {};
-  }
-  return StructureChange::open();
+  const bool is_odd = left >= kContradiction * kContradiction &&
+                      odd_one_out(predictions_of(spectra_, transfers_, variances_));
+  return is_odd ? std::optional<StructureChange>() : StructureChange::open();
 }
 
 bool ForceSearch::refine(const StructureRecord& record) {
   const std::optional<StructureChange> change = change_wanted();
   if (!change) return false;
-  result_.refined = refined_table(table_, record, result_.sigma, *change, !result_.rang);
+  // What contradicts the table looks like ringing, too: not of a record that begins quietly.
+  const bool at_rest = !result_.rang || options_.rests || options_.quiet > 0.0;
+  result_.refined = refined_table(table_, record, result_.sigma, *change, at_rest);
   table_.model = result_.refined->model;
   if (!recorded_.empty()) spectra_.responses = recorded_;
   transfers_ = transfers_of(table_, spectra_);
@@ -127,11 +127,11 @@ bool ForceSearch::wants_pulses(const BinEvidence& evidence) {
   const double instants = PulseTrain::instants_in(table_, rate(), result_.window);
   if (instants > kMostInstants) result_.untried = instants;
   if (instants <= kFewInstants) return true;
-  // Blows of a long window stand out of the smooth force, too: the others are not worth the search.
   if (result_.untried > 0.0) return false;
-  const Eigen::VectorXd smooth = force_of(evidence);
-  return peakedness(std::span(smooth.data(), static_cast<std::size_t>(smooth.size()))) >
-         0.5 * kPeaked;
+  // Blows of a long window stand out of the smooth force, too: the others are not worth the search.
+  if (peakedness(force_of(evidence)) > 0.5 * kPeaked) return true;
+  result_.untried = instants;
+  return false;
 }
 
 void ForceSearch::find_pulses(const BinEvidence& evidence) {

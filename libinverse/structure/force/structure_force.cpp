@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 
@@ -39,8 +40,8 @@ bool is_struck_late(const StructureRecord& record, double share) {
 StructureForce found_in(const StructureTable& table, const StructureRecord& record,
                         const StructureForceOptions& options, bool may_leave_out) {
   ActingPart part = acting_part(table, record, options);
-  StructureRecord own = part.of(record);
-  std::optional<ForceSearch> search(std::in_place, table, own, options, part.duration);
+  const StructureRecord own = part.of(record);
+  auto search = std::make_unique<ForceSearch>(table, own, options, part.duration);
   const std::optional<std::size_t> odd =
       may_leave_out ? search->odd_sensor() : std::optional<std::size_t>();
   if (odd) {
@@ -54,10 +55,9 @@ StructureForce found_in(const StructureTable& table, const StructureRecord& reco
   if (search->refine(own) && std::isnan(options.window)) {
     const ActingPart shorter = acting_part(search->table(), record, options);
     if (shorter.duration < 0.9 * part.duration) {
-      part = shorter;
-      own = part.of(record);
-      search.emplace(table, own, options, part.duration);
-      search->refine(own);
+      const StructureRecord earlier = shorter.of(record);
+      auto again = std::make_unique<ForceSearch>(table, earlier, options, shorter.duration);
+      if (again->refine(earlier)) part = shorter, search = std::move(again);
     }
   }
   StructureForce found = search->run();

@@ -47,7 +47,8 @@ struct StructureForce {
   /// ln p(data) over that without force; NaN: not tried.
   double evidence_impacts = std::numeric_limits<double>::quiet_NaN();
   double evidence_smooth = 0.0;
-  /// Instants of a pulse in the window where they are too many for `auto` to try; 0: tried.
+  /// Instants of a pulse in the window where `auto` did not try them: too many (kMostInstants), or
+  /// many (kFewInstants) of a smooth force without peaks; 0: tried.
   double untried = 0.0;
   double told = 0.0;  ///< power in the responses that a force explains, over that of noise alone
   double rise = 0.0;  ///< rise_towards_zero() of the force's power; NaN: not told

@@ -29,6 +29,8 @@ class Fit {
                        "measurement {} is one of those before: state each once",
                        result_.strikes.size() + 1);
       }
+      bins_ += own.count();
+      counted_twice_ = std::max(counted_twice_, own.correlated());
       result_.strikes.push_back({.spectra = std::move(own)});
     }
   }
@@ -50,6 +52,13 @@ class Fit {
       if (round == 1) tell_deviations(again, best);
     }
     if (result_.strikes.size() > 1) tell_further(best);
+    // What pulls a mode apart is the same in every strike.
+    for (const std::size_t n : result_.disputed) {
+      const auto i = static_cast<Index>(2 * n);
+      double& frequency = result_.table.frequency_deviations[n];
+      double& damping = result_.table.damping_deviations[n];
+      frequency = std::max(frequency, between_[i]), damping = std::max(damping, between_[i + 1]);
+    }
     if (!records_.front().force.empty()) result_.table.take_pulse(records_.front());
     return std::move(result_);
   }
@@ -72,9 +81,9 @@ class Fit {
       poles.push_back(search.best_addition(poles));
       const double cost = search.fit(poles, 3), told = parameters(poles.size());
       const double criterion =
-          numbers() * std::log(cost / counted_twice() / numbers()) + told * std::log(numbers());
+          numbers() * std::log(cost / counted_twice_ / numbers()) + told * std::log(numbers());
       result_.steps.push_back({.modes = poles.size(),
-                               .misfit = cost / counted_twice() / (numbers() - told),
+                               .misfit = cost / counted_twice_ / (numbers() - told),
                                .criterion = criterion,
                                .poles = poles});
       if (criterion < least) least = criterion, best = poles;
@@ -84,25 +93,14 @@ class Fit {
                    "the record tells {:.3g} numbers in its band, a mode takes {:g}: state a wider "
                    "band or a smaller contour",
                    numbers(), parameters(1));
-    result_.misfit = search.fit(best, 30) / counted_twice() / (numbers() - parameters(best.size()));
+    result_.misfit = search.fit(best, 30) / counted_twice_ / (numbers() - parameters(best.size()));
     tell(search, best);
     return best;
   }
 
   // Bins that tell alike count as one; of real and imaginary part each.
   double numbers() const {
-    return 2.0 * static_cast<double>(bins() * kinds_.size()) / counted_twice();
-  }
-  std::size_t bins() const {
-    std::size_t sum = 0;
-    for (const auto& strike : result_.strikes) sum += strike.spectra.count();
-    return sum;
-  }
-  // Of records of several lengths the most, whichever stands first.
-  double counted_twice() const {
-    double most = 1.0;
-    for (const auto& strike : result_.strikes) most = std::max(most, strike.spectra.correlated());
-    return most;
+    return 2.0 * static_cast<double>(bins_ * kinds_.size()) / counted_twice_;
   }
   double parameters(std::size_t modes) const {
     const auto n = static_cast<double>(modes), k = static_cast<double>(kinds_.size());
@@ -148,7 +146,7 @@ class Fit {
     std::vector<double> noise;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
       noise.push_back(scatters_[k].noise * std::sqrt(share));
-      Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(bins()));
+      Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(bins_));
       Index row = 0;
       for (std::size_t i = 0; i < weights_.size(); ++i) {
         const ContourSpectra& spectra = result_.strikes[i].spectra;
@@ -158,26 +156,25 @@ class Fit {
           const double weight = weights_[i][k][m];
           double off = share * scatters_[k].modal * scatters_[k].modal * made[m];
           if (of_force > 0.0) off -= of_force * std::norm(force.transfers[i][k][m]);
-          own[row] = 0.5 * counted_twice() * weight * weight * std::max(0.0, off);
+          own[row] = 0.5 * counted_twice_ * weight * weight * std::max(0.0, off);
         }
       }
     }
     const Eigen::MatrixXd covariance = search.covariance(slopes, variances, noise, force);
     const Eigen::VectorXd between = search.variance_between(slopes, fits);
+    between_ = between.cwiseSqrt() * student_quantile(kinds_.size() - 1) / student_quantile(0);
     for (std::size_t n = 0; n < poles.size(); ++n) {
       const auto i = static_cast<Index>(2 * n);
       MODCAL_REQUIRE(covariance(i, i) >= 0.0 && covariance(i + 1, i + 1) >= 0.0,
                      "nothing tells the mode at {:g} Hz from the others: state a narrower band or "
                      "fewer modes",
                      table.frequency(n));
-      Eigen::Vector2d variance = covariance.diagonal().segment<2>(i);
-      if (kinds_.size() >= kFewestThatPull && between[i] > variance[0]) {
-        const double wide = student_quantile(kinds_.size() - 1) / student_quantile(0);
-        variance = variance.cwiseMax(wide * wide * between.segment<2>(i));
+      if (kinds_.size() >= kFewestThatPull &&
+          (between.segment<2>(i).array() > covariance.diagonal().segment<2>(i).array()).any()) {
         result_.disputed.push_back(n);
       }
-      table.frequency_deviations.push_back(std::sqrt(variance[0]));
-      table.damping_deviations.push_back(std::sqrt(variance[1]));
+      table.frequency_deviations.push_back(std::sqrt(covariance(i, i)));
+      table.damping_deviations.push_back(std::sqrt(covariance(i + 1, i + 1)));
       const double f = table.frequency(n);
       const bool is_told = table.frequency_deviations[n] <= kToldWidth * poles[n].zeta;
       if (f < table.low || f > table.high || !is_told) result_.stand_ins.push_back(n);
@@ -244,7 +241,7 @@ class Fit {
       all += total;
     }
     result_.residuals.push_back(std::sqrt(rest / all));
-    scatters_.push_back(scatter_of(left, made, 1.0, counted_twice()));
+    scatters_.push_back(scatter_of(left, made, 1.0, counted_twice_));
     // A response function tells nothing of the noise of other records.
     result_.table.scatters.push_back(records_.front().force.empty()
                                          ? SensorScatter{.modal = std::sqrt(rest / modal)}
@@ -256,6 +253,9 @@ class Fit {
   const StrikeFitOptions& options_;
   std::vector<SensorScatter> scatters_;  // by which the bins weigh
   std::vector<BinWeights> weights_;      // by strike
+  std::size_t bins_ = 0;                 // of all strikes
+  double counted_twice_ = 1.0;           // of records of several lengths the most
+  Eigen::VectorXd between_;              // how far the sensors pull ln f_n and ln ζ_n apart
   StrikeFit result_;
 };
 
