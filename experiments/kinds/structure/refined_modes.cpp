@@ -93,7 +93,7 @@ std::string RefinedModes::sentence() const {
           ? std::string("the responses are worth no more numbers than there are unknowns")
           : fmt::format("{:.0f} of the {:.0f} numbers that the responses are worth are left",
                         fit.degrees, fit.numbers);
-  const std::string sentence = fmt::format(
+  std::string sentence = fmt::format(
       "modes refined without the force: median change of a frequency {:.2g}, its deviation "
       "{:.2g}; {}\n",
       quantile(moved, 0.5), quantile(deviations, 0.5), left);
