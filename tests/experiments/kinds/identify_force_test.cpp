@@ -16,6 +16,7 @@
 #include "libsim/records/record_file.hpp"
 #include "tests/experiments/kinds/structure_config.hpp"
 #include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal::identify_force_test {
 namespace {
