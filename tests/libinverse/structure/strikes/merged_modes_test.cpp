@@ -1,6 +1,7 @@
 // Two modes that stand closer together than they are wide, taken for one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
