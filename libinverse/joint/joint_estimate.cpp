@@ -31,11 +31,9 @@ void note_bending(const JointResult& result, std::vector<std::string>& notes) {
   if (result.bending_widening > kWorthAWord) {
     notes.push_back(fmt::format(
         "whether the ends feel the bending of the string, 1 + B n^2 times the tension in mode n, "
-        "as "
-        "a support does that holds it, is not stated: the deviation holds both, which makes it "
+        "as a support does that holds it, is not stated: the deviation holds both, which makes it "
         "{:.2g} times as wide; state reaction: support or tension (calibration.reaction, or that "
-        "of "
-        "inversion.estimator: {{type: joint}})",
+        "of inversion.estimator: {{type: joint}})",
         result.bending_widening));
   }
 }

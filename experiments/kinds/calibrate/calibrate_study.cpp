@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "experiments/kinds/calibrate/calibrate_force.hpp"
+#include "experiments/kinds/calibrate/calibrate_searches.hpp"
 #include "experiments/report/result.hpp"
 #include "libcalib/identifiability/tuning.hpp"
 #include "libinverse/joint/tuning.hpp"
@@ -43,64 +44,6 @@ void note(StudyResult& result, const std::string& text,
   if (!text.empty()) result.blocks.emplace_back(report::Text{text, kind});
 }
 
-// The highest mode that the data tell, 0 where they tell none; nothing where frequencies were not
-// free.
-std::optional<std::size_t> highest_identified(const CalibrationOutcome& outcome) {
-  const auto& found = outcome.result.continuation;
-  if (!found || !found->frequencies_free) return std::nullopt;
-  std::size_t highest = 0;
-  for (std::size_t i = 0; i < found->modes.size(); ++i) {
-    if (found->modes[i].source == ModeSource::kIdentified) highest = i + 1;
-  }
-  return highest;
-}
-
-ModalBasis first_modes(ModalBasis basis, std::size_t count) {
-  basis.omega.resize(count);
-  basis.zeta.resize(count);
-  basis.mass.resize(count);
-  return basis;
-}
-
-// Twice the highest mode identified, and fifteen in any case. Where the lines of a force fade into
-// noise, modes far above the last that is identified have many places in it: B then ends in one of
-// many minima, whose deviation knows nothing of the others.
-std::size_t modes_told(std::size_t highest) {
-  constexpr std::size_t kAnyCase = 15;
-  return std::max(kAnyCase, 2 * highest);
-}
-
-// With as many modes as the record tells: where it took more at first, once more, by what is left
-// of the budget.
-CalibrationOutcome calibrate_as_told(CalibrateOptions options, ObservedRecords& observed,
-                                     const StudyContext& context) {
-  const auto calibrated = [&] {
-    return calibrate_strokes(options, observed.strokes, polling_clock(context), observed.plucks);
-  };
-  CalibrationOutcome first = calibrated();
-  const std::size_t taken = observed.strokes.front().basis.size();
-  const auto identified = highest_identified(first);
-  const bool is_of_record = !observed.strokes.front().modes_taken.empty();
-  if (!is_of_record || !identified || taken <= modes_told(*identified)) return first;
-  const OptimizationResult& spent = first.result.search;
-  Budget& budget = options.calibration.budget;
-  budget.evaluations -= static_cast<std::int64_t>(spent.evaluations);
-  budget.seconds -= spent.seconds;
-  if (budget.evaluations < 1 || budget.seconds <= 0.0) return first;
-  const std::size_t told = modes_told(*identified);
-  for (Observation& stroke : observed.strokes) {
-    stroke.basis = first_modes(stroke.basis, told);
-    stroke.modes_taken = fmt::format(
-        "{} modes taken (modes: auto): none above mode {} is identified of the {} in the band in "
-        "which the record stands out of the noise",
-        told, *identified, taken);
-  }
-  CalibrationOutcome outcome = calibrated();
-  outcome.result.search.evaluations += spent.evaluations;
-  outcome.result.search.seconds += spent.seconds;
-  return outcome;
-}
-
 // Of a record of which more modes are stated than it tells by half.
 std::string too_many_modes(const Found& found) {
   const std::size_t stated = found.measured.basis.size();
@@ -131,38 +74,8 @@ std::string too_few_modes(const CalibrateOptions& options, const Found& found) {
   return fmt::format(
       "the record tells {} of its modes, too few for a string of which nothing else is known: f0, "
       "B and x_c may be those of another minimum; record for longer, with less noise or while the "
-      "string sounds, or state priors "
-      "(calibration.parameters.priors)",
+      "string sounds, or state priors (calibration.parameters.priors)",
       identified == 0 ? "none" : fmt::format("{}", identified));
-}
-
-// Where the ends do not tell x_c, every few millimeters may have a minimum, whose deviation knows
-// nothing of the others: what starts beside the place stated is to come to the same one.
-std::string another_contact(const CalibrateOptions& options, const ObservedRecords& observed,
-                            const StudyContext& context, const CalibrationOutcome& outcome) {
-  const ContinuationResult* first = outcome.result.continuation.get();
-  const bool is_alone = observed.strokes.size() == 1 && observed.plucks.empty();
-  if (!outcome.contact_untold || !is_alone || !first || !first->right) return {};
-  Observation stroke = observed.strokes.front();
-  const double stated = stroke.contact, length = stroke.basis.length;
-  for (const double shift : {-kContactShift, kContactShift}) {
-    stroke.contact = stated + shift * length;
-    if (!(stroke.contact > 0.0 && stroke.contact < length)) continue;
-    const CalibrationOutcome other = calibrate_observation(options, stroke, polling_clock(context));
-    const ContinuationResult* second = other.result.continuation.get();
-    if (!second || !second->right || !held_back(other.result).empty()) continue;
-    const double apart = std::abs(other.refined.contact - outcome.refined.contact);
-    const double deviation = std::hypot(first->contact_deviation, second->contact_deviation);
-    if (apart < kContactsApart * deviation) continue;
-    return fmt::format(
-        "the ends do not tell x_c in this record, and from {:.4g} mm the search comes to {:.4g} +- "
-        "{:.2g} mm, from {:.4g} mm to {:.4g} +- {:.2g} mm, neither of which the data contradict: "
-        "hold it where it is known (calibration.parameters.contact: false), or record a stroke "
-        "that the string answers between its modes, too",
-        1e3 * stated, 1e3 * outcome.refined.contact, 1.96e3 * first->contact_deviation,
-        1e3 * stroke.contact, 1e3 * other.refined.contact, 1.96e3 * second->contact_deviation);
-  }
-  return {};
 }
 
 // Of a record in which nothing drives the string: what tells x_c is the force.
@@ -277,20 +190,17 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   OutputRequest outputs = truth_outputs(shown.figures, shown.overview);
   if (audio) outputs.velocity = true;
   ObservedRecords observed = observe_records(*this, outputs, context);
-  const CalibrationOutcome outcome = calibrate_as_told(*this, observed, context);
+  CalibrationOutcome outcome = calibrate_as_told(*this, observed, context);
   const Observation& measured = observed.strokes.front();
   context.throw_if_interrupted();
   const CalibratedForce force = identify_calibrated(
       *this, measured, outcome, inversion_outputs(shown.figures, shown.wants_all()), context.stop);
 
   StudyResult result;
-  const Found found{outcome,
-                    measured,
-                    force.observation,
-                    force.sensors,
-                    force.sides,
-                    force.ringing_misfit,
-                    another_contact(*this, observed, context, outcome)};
+  const std::string another = another_contact(*this, observed, context, outcome);
+  const Found found{outcome,       measured,    force.observation,
+                    force.sensors, force.sides, force.ringing_misfit,
+                    another};
   add_answer(*this, shown, found, result);
   add_account(*this, shown, found, result);
   return result;

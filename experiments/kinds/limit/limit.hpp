@@ -7,6 +7,9 @@
 
 namespace modcal {
 
+/// Bounds by which an error is that of another minimum, not of noise.
+inline constexpr double kFailure = 7.8;
+
 /// A bow on any structure, whose modes are refined without the force.
 struct StructureLimitOptions : StructureSceneOptions {
   StructureChangeOptions change;

@@ -4,7 +4,6 @@
 namespace modcal {
 namespace {
 
-constexpr double kFailure = 7.8;
 constexpr double kWellSeen = 5e-4;
 constexpr const char* kLawNames[] = {"f0", "B", "x_c", "damping"};
 

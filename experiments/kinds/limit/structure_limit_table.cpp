@@ -9,7 +9,6 @@
 namespace modcal {
 namespace {
 
-constexpr double kFailure = 7.8;  // bounds: another minimum, not noise
 constexpr double kTwoSided = 1.959964;
 
 enum class Kind { kFrequency, kDamping, kConstant };

@@ -93,17 +93,10 @@ std::string RefinedModes::sentence() const {
           ? std::string("the responses are worth no more numbers than there are unknowns")
           : fmt::format("{:.0f} of the {:.0f} numbers that the responses are worth are left",
                         fit.degrees, fit.numbers);
-  std::string sentence = fmt::format(
+  return fmt::format(
       "modes refined without the force: median change of a frequency {:.2g}, its deviation "
       "{:.2g}; {}\n",
       quantile(moved, 0.5), quantile(deviations, 0.5), left);
-  const StructureChange& change = fit.allowed;
-  if (!change.is_found) return sentence;
-  return fmt::format(
-      "the sensors contradict the table as it is: a structure was allowed for that has changed by "
-      "as much as they tell, {:.2g} % in frequencies, {:.2g} % in damping ratios, {:.2g} % in "
-      "modal constants\n{}",
-      100.0 * change.frequency, 100.0 * change.damping, 100.0 * change.residue, sentence);
 }
 
 void RefinedModes::add_parameters(std::vector<FoundParameter>& parameters) const {
@@ -130,6 +123,13 @@ std::vector<std::string> RefinedModes::doubts() const {
   std::vector<std::string> texts;
   // Sizes that were found are no statement that could be contradicted.
   const bool is_stated = !fit.allowed.is_found;
+  if (!is_stated) {
+    texts.push_back(fmt::format(
+        "the sensors contradict the table as it is: a structure was allowed for that has changed "
+        "by as much as they tell, {:.2g} % in frequencies, {:.2g} % in damping ratios, {:.2g} % in "
+        "modal constants; unchanged: true takes the table as it is",
+        100.0 * fit.allowed.frequency, 100.0 * fit.allowed.damping, 100.0 * fit.allowed.residue));
+  }
   if (is_stated && frequencies.contradict())
     texts.push_back(frequencies.text("frequencies", "frequency"));
   if (is_stated && dampings.contradict())

@@ -178,6 +178,11 @@ TEST_F(CalibrateLines, TakeNoMoreModesThanAreTold) {
     EXPECT_EQ(untold.status, report::Status::kFailed) << position;
     EXPECT_THAT(untold.answer, testing::HasSubstr("the ends do not tell x_c in this record"));
   }
+  // Of the budget that is left no other start comes to an end.
+  const StudyResult cut =
+      calibrated({}, "auto", "30 mm}\ncalibration: {budget: {evaluations: 600}");
+  EXPECT_EQ(cut.status, report::Status::kFailed);
+  EXPECT_THAT(cut.summary, testing::HasSubstr("before another start is tried: raise calibration"));
   const StudyResult taken =
       calibrated({}, "auto", "30 mm}\ncalibration: {parameters: {contact: false}");
   EXPECT_EQ(taken.status, report::Status::kOk) << taken.answer;
