@@ -83,7 +83,7 @@ std::string another_contact(CalibrateOptions options, const ObservedRecords& obs
   for (const double shift : {-kContactShift, kContactShift}) {
     stroke.contact = stated + shift * length;
     if (!(stroke.contact > 0.0 && stroke.contact < length)) continue;
-    const std::string untried =
+    std::string untried =
         "the ends do not tell x_c, and the budget is spent before another start is tried: raise "
         "calibration.budget";
     if (!spend(spent, options.calibration.budget)) return untried;
