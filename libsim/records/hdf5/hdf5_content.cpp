@@ -1,5 +1,6 @@
 #include "libsim/records/hdf5/hdf5_content.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -98,11 +99,14 @@ std::mutex& hdf5_lock() {
 
 Hdf5Content::Hdf5Content(Path path) : path_(std::move(path)) {
   const std::lock_guard lock(hdf5_lock());
-  constexpr unsigned kMostSeconds = 20;
-  MODCAL_REQUIRE(survives([this] { list(); }, kMostSeconds),
+  const std::uintmax_t bytes = std::filesystem::file_size(path_);
+  // Headers of objects, hundreds of bytes each, are read in a millisecond; damaged ones may lead
+  // the library round for ever.
+  const auto most_seconds = static_cast<unsigned>(2 + std::min<std::uintmax_t>(bytes >> 17, 18));
+  MODCAL_REQUIRE(survives([this] { list(); }, most_seconds),
                  "{}: the HDF5 library fails on it: the file of {} bytes is damaged; copy or save "
                  "it again",
-                 path_.string(), std::filesystem::file_size(path_));
+                 path_.string(), bytes);
   list();
 }
 

@@ -64,16 +64,11 @@ while read -r page; do
   pdf=${page%.html}.pdf
   # Charts are drawn as vectors: a bitmap is one that the paper has blurred.
   pdfimages -list "$pdf" | sed -n "3,\$s|^|${page#"$1/"}: a picture: |p" >>"$folder/found"
-  pdftotext -bbox "$pdf" "$pdf.words"
-  python3 "$here/pdf_findings.py" "$pdf.words" "$page" |
-    sed "s|^|${page#"$1/"}: |" >>"$folder/found"
+  echo "$pdf $page" >>"$folder/printed"
 done <"$1/pages"
-figures=0
-for pdf in $(find "$1" -path '*/figures/*.pdf' | sort); do
-  figures=$((figures + 1))
-  pdftotext -bbox "$pdf" "$pdf.words"
-  python3 "$here/pdf_findings.py" "$pdf.words" | sed "s|^|${pdf#"$1/"}: |" >>"$folder/found"
-done
+find "$1" -path '*/figures/*.pdf' | sort >"$folder/drawn"
+figures=$(wc -l <"$folder/drawn")
+cat "$folder/printed" "$folder/drawn" | /usr/bin/python3 "$here/pdf_findings.py" "$1" >>"$folder/found"
 [ "$figures" -gt 30 ] || { echo "only $figures figures"; exit 1; }
 [ "$pages" -gt 10 ] || { echo "only $pages reports"; exit 1; }
 [ ! -s "$folder/found" ] || { cat "$folder/found"; exit 1; }

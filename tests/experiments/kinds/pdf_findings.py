@@ -1,11 +1,13 @@
 """What is wrong with a report or a figure on paper, by the boxes of its words.
 
-pdf_findings.py WORDS [PAGE]: prints a line for every mistake. WORDS is what `pdftotext -bbox` says
-of a figure's PDF or of that of the report PAGE marked by check_config_pdfs.sh.
+pdf_findings.py FOLDER <LIST: prints a line for every mistake. LIST has lines "figure.pdf" and
+"report.pdf report.html", of paths in FOLDER; the report is one that check_config_pdfs.sh marked.
 """
 import collections
 import html
+import os
 import re
+import subprocess
 import sys
 
 Word = collections.namedtuple("Word", "text left top right bottom")
@@ -17,10 +19,10 @@ WIDTHS = {"1": 525, "2": 256}  # of charts alone in a row and of two
 LETTERS = 0.22  # a box is so much taller, above and below, than its letters
 
 
-def pages_of(file):
+def pages_of(lines):
     """(width, height, words) of every page."""
     pages = []
-    for line in open(file, encoding="utf-8", errors="replace"):
+    for line in lines:
         page = re.search(r'<page width="([\d.]+)" height="([\d.]+)"', line)
         if page:
             pages.append((float(page[1]), float(page[2]), []))
@@ -93,18 +95,27 @@ def findings_of_marks(pages, charts, tables):
                 yield f"page {page}: chart {name} is not beside the one before it"
 
 
-def main():
-    pages = pages_of(sys.argv[1])
-    margin = MARGIN if len(sys.argv) > 2 else SHEET_MARGIN
+def words_of(pdf):
+    return subprocess.run(["pdftotext", "-bbox", pdf, "-"], check=True, capture_output=True).stdout.decode(
+        errors="replace").splitlines()
+
+
+def findings(pdf, report=None):
+    pages = pages_of(words_of(pdf))
+    margin = MARGIN if report else SHEET_MARGIN
     for number, (width, height, words) in enumerate(pages):
-        for finding in findings_of_words(f"page {number + 1}", width, height, words, margin):
-            print(finding)
-    if len(sys.argv) == 2:
-        return
-    source = open(sys.argv[2], encoding="utf-8").read()
-    charts = len(re.findall(r'<div class="chart[" ]', source))
-    for finding in findings_of_marks(pages, charts, source.count("<table>")):
-        print(finding)
+        yield from findings_of_words(f"page {number + 1}", width, height, words, margin)
+    if report:
+        source = open(report, encoding="utf-8").read()
+        charts = len(re.findall(r'<div class="chart[" ]', source))
+        yield from findings_of_marks(pages, charts, source.count("<table>"))
+
+
+def main():
+    for line in sys.stdin:
+        files = line.split()
+        for finding in findings(*files):
+            print(f"{os.path.relpath(files[0], sys.argv[1])}: {finding}")
 
 
 if __name__ == "__main__":
