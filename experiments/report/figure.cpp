@@ -79,7 +79,7 @@ CsvColumn column_of(const Axis& heading, const std::vector<double>& values) {
 }
 
 // Series over the same abscissae, these in front.
-struct Block {
+struct ColumnGroup {
   const std::vector<double>* x;
   std::vector<CsvColumn> columns;
 };
@@ -89,12 +89,12 @@ std::string name_of(const Panel& panel, const Series& series) {
   return series.label.empty() ? panel.title : panel.title + ": " + series.label;
 }
 
-Block& block_for(std::vector<Block>& blocks, const Panel& panel, const Series& series) {
-  const auto found = std::find_if(blocks.begin(), blocks.end(), [&](const Block& block) {
-    return block.columns.front().heading == panel.x.text() && *block.x == series.x;
+ColumnGroup& group_for(std::vector<ColumnGroup>& groups, const Panel& panel, const Series& series) {
+  const auto found = std::find_if(groups.begin(), groups.end(), [&](const ColumnGroup& group) {
+    return group.columns.front().heading == panel.x.text() && *group.x == series.x;
   });
-  if (found != blocks.end()) return *found;
-  return blocks.emplace_back(Block{&series.x, {column_of(panel.x, series.x)}});
+  if (found != groups.end()) return *found;
+  return groups.emplace_back(ColumnGroup{&series.x, {column_of(panel.x, series.x)}});
 }
 
 double middle(const std::vector<double>& edges, std::size_t i, const Axis& axis) {
@@ -118,13 +118,13 @@ std::vector<CsvColumn> map_columns(const Panel& panel) {
 
 std::vector<CsvColumn> columns_of(const Figure& figure) {
   std::vector<CsvColumn> columns;
-  std::vector<Block> blocks;
+  std::vector<ColumnGroup> groups;
   for (const Panel& panel : figure.panels) {
     if (panel.map) columns = map_columns(panel);
     for (const Series* series : shown_series(panel)) {
-      Block& block = block_for(blocks, panel, *series);
+      ColumnGroup& group = group_for(groups, panel, *series);
       const auto add = [&](const char* suffix, const std::vector<double>& values) {
-        block.columns.push_back(
+        group.columns.push_back(
             column_of({.label = name_of(panel, *series) + suffix, .unit = panel.y.unit}, values));
       };
       add("", series->y);
@@ -133,8 +133,8 @@ std::vector<CsvColumn> columns_of(const Figure& figure) {
       add(" high", series->y_high);
     }
   }
-  for (const Block& block : blocks) {
-    columns.insert(columns.end(), block.columns.begin(), block.columns.end());
+  for (const ColumnGroup& group : groups) {
+    columns.insert(columns.end(), group.columns.begin(), group.columns.end());
   }
   return columns;
 }

@@ -201,7 +201,7 @@ class Enumeration:
     def all_of(self, name, pool):
         before, after = self.without(COMMANDS[name])
         calls, outcomes, wrong = 0, collections.Counter(), []
-        step, more = 16, True
+        step, more = os.cpu_count() or 1, True  # what follows the last call is a run without a failure
         while more:
             numbers = [1 + (calls + i) * self.every for i in range(step)]
             for number, result in zip(numbers, pool.map(
