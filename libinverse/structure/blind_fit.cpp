@@ -1,6 +1,5 @@
 #include "libinverse/structure/blind_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 
 #include "libinverse/structure/blind_likelihood.hpp"
 #include "libinverse/structure/tuning.hpp"
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 
@@ -79,7 +79,7 @@ void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacob
   const Eigen::MatrixXd made = 2.0 / correlated * square_of(slopes);  // M
   const Eigen::MatrixXd scatter =
       2.0 / (correlated * correlated) * (slopes.transpose() * correlate(slopes));  // B
-  const Eigen::LLT<Eigen::MatrixXd> curvature(made + one);
+  const PositiveSolver curvature(made + one);
   const Eigen::MatrixXd inverse = curvature.solve(one);
   fit.told = 1.0 - inverse.diagonal().array();
   const Eigen::MatrixXd pull = inverse * made;  // of θ towards its true value
@@ -88,7 +88,7 @@ void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacob
   fit.degrees = fit.numbers - (inverse * scatter * (2.0 * one - inverse * made)).trace() +
                 (pull * inverse).trace();
   if (ends.cols() > 0) fit.degrees -= ends.cwiseProduct(correlate(ends)).sum() / correlated;
-  const Eigen::MatrixXd root = Eigen::LLT<Eigen::MatrixXd>(scatter + one).matrixL();
+  const Eigen::MatrixXd root = PositiveSolver(scatter + one).factor().matrixL();
   fit.root = fit.prior.asDiagonal() * curvature.solve(root);
   fit.covariance = fit.root * fit.root.transpose();
 }
@@ -178,7 +178,7 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
     for (int round = 0; round < 8 && !better; ++round, damping *= better ? 1.0 : 10.0) {
       Eigen::MatrixXd matrix = information;
       matrix.diagonal() *= 1.0 + damping;
-      const Eigen::VectorXd theta = fit.change - matrix.llt().solve(slope);
+      const Eigen::VectorXd theta = fit.change - PositiveSolver(matrix).solve(slope);
       const ModalModel model = moved_by(start, theta);
       BlindPoint there = likelihood.at(model);
       const double next = there.cost + weight.dot(theta.cwiseAbs2());

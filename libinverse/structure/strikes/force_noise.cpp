@@ -114,7 +114,7 @@ class CommonNoise {
       matrix += slopes_[k].transpose() * slopes_[k];
       score += slopes_[k].transpose() * rows[k];
     }
-    const Eigen::VectorXd change = matrix.ldlt().solve(score);
+    const Eigen::VectorXd change = SemidefiniteSolver(matrix).solve(score);
     for (std::size_t k = 0; k < fits_.size(); ++k) rows[k] -= slopes_[k] * change;
   }
 

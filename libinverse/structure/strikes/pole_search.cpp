@@ -100,7 +100,7 @@ SensorFit PoleSearch::sensor_at(std::size_t k, const std::vector<Columns>& colum
   fit.columns.array().rowwise() /= fit.norms.transpose().array();
   Eigen::MatrixXd gram = products_of(fit.columns);
   gram.diagonal().array() += 1e-12;
-  fit.gram.compute(gram);
+  fit.gram = SemidefiniteSolver(gram);
   fit.amplitudes = fit.gram.solve(fit.columns.transpose() * data_[k]);
   fit.residual = data_[k] - fit.columns * fit.amplitudes;
   return fit;
@@ -229,7 +229,7 @@ Eigen::MatrixXd PoleSearch::covariance(const std::vector<Eigen::MatrixXd>& slope
     }
     if (force.deviation > 0.0) add(force.deviation, noise_seen_by(strike.spectra, of_force));
   }
-  const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  const SemidefiniteSolver solver(information);
   const Eigen::MatrixXd half = solver.solve(spread);
   return solver.solve(half.transpose());
 }
@@ -238,7 +238,7 @@ Eigen::VectorXd PoleSearch::variance_between(const std::vector<Eigen::MatrixXd>&
                                              const std::vector<SensorFit>& fits) const {
   Eigen::MatrixXd information = products_of(slopes.front());
   for (std::size_t k = 1; k < sensors(); ++k) information += products_of(slopes[k]);
-  const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  const SemidefiniteSolver solver(information);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(information.rows());
   for (std::size_t k = 0; k < sensors(); ++k) {
     sum += solver.solve(slopes[k].transpose() * fits[k].residual).cwiseAbs2();
@@ -255,7 +255,7 @@ double PoleSearch::fit(std::vector<ModalPole>& poles, int steps) const {
       Eigen::MatrixXd matrix = equations.matrix;
       matrix.diagonal() *= 1.0 + damping;
       matrix.diagonal().array() += 1e-12 * matrix.diagonal().maxCoeff();
-      const Eigen::VectorXd change = -matrix.ldlt().solve(equations.slope);
+      const Eigen::VectorXd change = -SemidefiniteSolver(matrix).solve(equations.slope);
       std::vector<ModalPole> next = poles;
       for (std::size_t n = 0; n < poles.size(); ++n) {
         const auto i = static_cast<Index>(2 * n);

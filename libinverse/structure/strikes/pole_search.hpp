@@ -1,11 +1,11 @@
 // Least squares over poles with the linear unknowns of every sensor eliminated.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "libinverse/structure/strikes/strike_columns.hpp"
 #include "libinverse/structure/tuning.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 
@@ -13,7 +13,7 @@ namespace modcal {
 struct SensorFit {
   Eigen::MatrixXd columns;  ///< weighted; real over imaginary parts
   Eigen::VectorXd norms;    ///< of the columns before
-  Eigen::LDLT<Eigen::MatrixXd> gram;
+  SemidefiniteSolver gram;
   Eigen::VectorXd amplitudes;  ///< of the columns as they are
   Eigen::VectorXd residual;
 
