@@ -94,8 +94,11 @@ std::string StrikeFit::rejection(std::span<const std::string> names) const {
 
 std::string StrikeFit::without_damping() const {
   for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
+    const double f = table.frequency(n);
+    // Beyond the band a pole stands for what no other explains, of any damping.
+    if (f < table.low || f > table.high) continue;
     if (table.model.poles[n].zeta > 1.01 * kLeastDampingRatio) continue;
-    return fmt::format("rejected: no damping is left of the mode at {:.5g} Hz", table.frequency(n));
+    return fmt::format("rejected: no damping is left of the mode at {:.5g} Hz", f);
   }
   return {};
 }

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "libinverse/structure/strikes/strike_fit.hpp"
+#include "libinverse/structure/tuning.hpp"
+
 namespace modcal::strike_weights_test {
 namespace {
 
@@ -38,6 +41,19 @@ TEST(SensorScatterOf, ExpectedPowersIsTheirOwn) {
   const SensorScatter found = scatter_of(left, modal, 2.0, 1.0);
   EXPECT_NEAR(found.modal, 0.03, 3e-5);
   EXPECT_NEAR(found.noise, 2e-3, 2e-6);
+}
+
+// A pole beyond the band stands for what no other explains, whatever damping is left of it.
+TEST(StrikeFitWithoutDamping, LooksAtTheModesOfTheBand) {
+  StrikeFit fit;
+  fit.table.low = 10.0, fit.table.high = 600.0;
+  for (const double f : {100.0, 610.0}) {
+    fit.table.model.poles.push_back({.omega = 2.0 * std::numbers::pi * f, .zeta = 0.01});
+  }
+  fit.table.model.poles[1].zeta = kLeastDampingRatio;
+  EXPECT_EQ(fit.without_damping(), "");
+  fit.table.model.poles[0].zeta = kLeastDampingRatio;
+  EXPECT_EQ(fit.without_damping(), "rejected: no damping is left of the mode at 100 Hz");
 }
 
 }  // namespace
