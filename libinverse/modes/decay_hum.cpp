@@ -7,9 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "libinverse/modes/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/signal/mains_search.hpp"
 #include "libsim/signal/statistics.hpp"
+#include "libsim/signal/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -27,21 +29,31 @@ double duration_of(const DecayRecord& decay) {
 // Its decay rate over 2π, half the width of its peak.
 double half_width(const DecayPole& pole) { return pole.damping_ratio * pole.frequency; }
 
+// A line keeps its amplitude. By how much ln of it may seem to fall along the record: what noise
+// lets a decay appear, and the width that the mains have as they wander.
+bool may_be_steady(const DecayMode& mode, double duration) {
+  const double turns = kFullTurn * duration;
+  const double deviation = mode.deviation.damping_ratio;
+  const double told = std::isnan(deviation) ? 0.0 : turns * mode.pole.frequency * deviation;
+  return turns * half_width(mode.pole) <
+         std::min(2.0, kSteadyLoss + turns * kMainsHalfWidth + 4.0 * told);
+}
+
 // Modes of a string stand near multiples of its fundamental, the low ones at least; those of a
 // structure without one (NaN) anywhere.
-bool may_be_line(const DecayPole& pole, double fundamental, double duration) {
-  const double place = pole.frequency / fundamental;
+bool may_be_line(const DecayMode& mode, double fundamental, double duration) {
+  const double place = mode.pole.frequency / fundamental;
   const bool is_harmonic = std::abs(place - std::max(1.0, std::round(place))) <= 0.1;
-  return !is_harmonic && kFullTurn * half_width(pole) * duration < 2.0;
+  return !is_harmonic && may_be_steady(mode, duration);
 }
 
 // Under the window a peak falls as that of the decay does where it is wider than the window's lobe.
-std::vector<OwnLine> own_lines_of(const DecayRecord& decay, std::span<const DecayPole> poles,
+std::vector<OwnLine> own_lines_of(const DecayRecord& decay, std::span<const DecayMode> poles,
                                   double fundamental) {
   std::vector<OwnLine> own;
-  for (const DecayPole& pole : poles) {
-    if (may_be_line(pole, fundamental, duration_of(decay))) continue;
-    own.push_back({.frequency = pole.frequency, .reach = 4.0 * half_width(pole)});
+  for (const DecayMode& mode : poles) {
+    if (may_be_line(mode, fundamental, duration_of(decay))) continue;
+    own.push_back({.frequency = mode.pole.frequency, .reach = 4.0 * half_width(mode.pole)});
   }
   return own;
 }
@@ -54,7 +66,7 @@ double blackman_harris(double place) {
 
 }  // namespace
 
-std::vector<double> hum_in(const DecayRecord& decay, std::span<const DecayPole> poles,
+std::vector<double> hum_in(const DecayRecord& decay, std::span<const DecayMode> poles,
                            double fundamental) {
   std::vector<double> lines;
   for (std::size_t c = 0; c < decay.channels.size() && lines.empty(); c += 2) {
@@ -69,6 +81,11 @@ std::vector<double> hum_in(const DecayRecord& decay, std::span<const DecayPole> 
         find_mains(std::move(signals), decay.sample_rate, own_lines_of(decay, poles, fundamental),
                    power, std::numeric_limits<double>::quiet_NaN());
   }
+  // What stands out most where the search for the mains ends belongs to something beside them.
+  const auto is_off = [&lines](double mains) {
+    return std::abs(lines.front() - mains) > kMainsTolerance * mains;
+  };
+  if (!lines.empty() && is_off(50.0) && is_off(60.0)) return {};
   // Beside the last line that is seen the modes may hide another.
   if (lines.size() > kFewLines) {
     for (std::size_t h = lines.size() + 1; h <= kMostLines; ++h) {
@@ -80,7 +97,7 @@ std::vector<double> hum_in(const DecayRecord& decay, std::span<const DecayPole> 
 }
 
 DecayRecord without_hum(DecayRecord decay, std::span<const double> lines,
-                        std::span<const DecayPole> poles, double fundamental) {
+                        std::span<const DecayMode> poles, double fundamental) {
   const double spacing = 1.0 / duration_of(decay);
   std::vector<double> apart;
   const std::vector<OwnLine> own = own_lines_of(decay, poles, fundamental);
@@ -106,10 +123,10 @@ DecayRecord without_hum(DecayRecord decay, std::span<const double> lines,
   return decay;
 }
 
-bool is_line(const DecayPole& pole, std::span<const double> lines, double duration) {
-  return kFullTurn * half_width(pole) * duration < 2.0 &&
-         std::ranges::any_of(
-             lines, [&](double line) { return std::abs(pole.frequency - line) < 1.0 / duration; });
+bool is_line(const DecayMode& mode, std::span<const double> lines, double duration) {
+  return may_be_steady(mode, duration) && std::ranges::any_of(lines, [&](double line) {
+           return std::abs(mode.pole.frequency - line) < 1.0 / duration;
+         });
 }
 
 Eigen::MatrixXd hum_columns(std::size_t samples, double rate, std::span<const double> lines) {

@@ -84,7 +84,7 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
   std::vector<DecayMode> modes = fit.modes;
   result.poles.clear();
   for (std::size_t k = 0; k < modes.size(); ++k) {
-    result.poles.push_back(modes[k].pole);
+    result.poles.push_back(modes[k]);
     if (!likelihood) modes[k].deviation = stable[k].spread;
     const std::complex<double> gain = decay.gain(modes[k].pole.exponent());
     for (auto& amplitude : modes[k].amplitude) amplitude /= gain;
@@ -138,13 +138,13 @@ Realized beside_hum(const DecayRecord& decay, const PluckIdentification& known, 
   Realized realized(without_hum(decay, known.lines, known.poles, fundamental), options);
   const double duration = static_cast<double>(decay.samples()) / decay.sample_rate;
   std::erase_if(realized.stable, [&](const StablePole& stable) {
-    const DecayPole& pole = stable.pole;
-    const auto nearest = std::ranges::min_element(known.poles, {}, [&](const DecayPole& other) {
-      return std::abs(other.frequency - pole.frequency);
-    });
-    return is_line(pole, known.lines, duration) ||
+    const auto distance = [&](const DecayMode& other) {
+      return std::abs(other.pole.frequency - stable.pole.frequency);
+    };
+    const auto nearest = std::ranges::min_element(known.poles, {}, distance);
+    return is_line({.pole = stable.pole, .deviation = stable.spread}, known.lines, duration) ||
            (nearest != known.poles.end() && is_line(*nearest, known.lines, duration) &&
-            std::abs(nearest->frequency - pole.frequency) < 3.0 / duration);
+            distance(*nearest) < 3.0 / duration);
   });
   return realized;
 }
@@ -161,7 +161,7 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
   std::vector<DecayMode> others;
   const auto number = [&](std::vector<DecayMode> modes, LawNumbers& law) {
     std::erase_if(modes, [&](const DecayMode& mode) {
-      return is_line(mode.pole, result.lines, duration) ||
+      return is_line(mode, result.lines, duration) ||
              mode.pole.damping_ratio > options.stabilization.highest_damping;
     });
     others.clear();

@@ -45,7 +45,7 @@ struct PluckIdentification {
   /// Without a number and not beside a mode that has one, but at least a tenth of the largest: of a
   /// body, or of another string; ascending.
   std::vector<DecayMode> others;
-  std::vector<DecayPole> poles;  ///< of the fit, those that are no modes, too
+  std::vector<DecayMode> poles;  ///< of the fit, those that are no modes, too
   std::vector<double> lines;     ///< of the mains [Hz]
   std::vector<double> noise;     ///< residual of each channel within the band; empty for era
   bool converged = false;        ///< the fit; true for era

@@ -80,7 +80,7 @@ class MainsSearch {
   double refined(double mains, const std::vector<Line>& lines) const {
     const double step = spacing_ / (8.0 * static_cast<double>(lines.back().harmonic));
     double best = mains, most = 0.0;
-    const auto reach = static_cast<int>(std::ceil(0.005 * mains / step));
+    const auto reach = static_cast<int>(std::ceil(kMainsTolerance * mains / step));
     for (int i = -reach; i <= reach; ++i) {
       const double here = power(mains + i * step, lines);
       if (here > most) most = here, best = mains + i * step;
@@ -104,7 +104,7 @@ class MainsSearch {
   // What stands out near bin `center`, and the median power about it outside the four bins of the
   // window's lobe; that is 0 where nothing does. fundamental: as far as to the next line.
   Line line_near(std::size_t harmonic, double center, double fundamental) const {
-    const double reach = 1.0 + 0.005 * center;
+    const double reach = 1.0 + kMainsTolerance * center;
     const double about = std::min(20.0, 0.5 * fundamental);
     Line line{harmonic};
     double most = 0.0;
