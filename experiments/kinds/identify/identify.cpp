@@ -40,7 +40,15 @@ void DecayingStructure::visit(OptionVisitor& visitor) {
 
 std::vector<Finding> IdentifyOptions::lint() const {
   std::vector<Finding> findings;
-  if (!has_structure && identification.lowest_frequency > 0.0) {
+  const StabilizationOptions& orders = identification.stabilization;
+  const std::int64_t count = (orders.highest_order - orders.lowest_order) / 2 + 1;
+  if (orders.highest_order < orders.lowest_order || count < orders.required) {
+    add_finding(findings, "identification.stabilization",
+                "a mode is to be stable over {} orders in a row (required), and from {} to {} by "
+                "twos there are {}: raise highest_order, or require fewer",
+                orders.required, orders.lowest_order, orders.highest_order,
+                std::max<std::int64_t>(0, count));
+  } else if (!has_structure && identification.lowest_frequency > 0.0) {
     add_finding(findings, "identification.lowest_frequency",
                 "a string's modes are numbered from the fundamental on: leave it out");
   } else if (has_scene + has_record + has_structure > 1) {
@@ -185,12 +193,19 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
     result.status = report::Status::kFailed;
     result.answer = outcome.found.modes.empty()
                         ? why_nothing(outcome)
-                        : "the fit did not converge: its modes and error bars are not final; take "
-                          "method: era, or lower identification.highest_frequency";
+                        : "the fit did not converge: its modes and error bars are not final; "
+                          "state record.start and record.stop of one free decay, as where a "
+                          "second blow follows, or lower identification.highest_frequency";
     result.summary += result.answer + "\n";
   }
   if (!outcome.record) return result;
   for (const std::string& warning : outcome.record->warnings) result.warn(warning);
+  if (!outcome.found.full_rank && !outcome.found.modes.empty()) {
+    result.warn(
+        "the modes have no error bars, but the spread over the orders of the realization, and "
+        "nothing asks whether they explain the record: method: maximum_likelihood does both, where "
+        "the record tells its poles apart");
+  }
   if (result.status != report::Status::kOk) return result;
   std::vector<std::string> warnings;
   const std::string why =

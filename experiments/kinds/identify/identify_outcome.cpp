@@ -49,7 +49,9 @@ report::Figure errors_figure(const IdentifyOutcome& outcome) {
 std::string sentence_of(const IdentifyOutcome& outcome, double highest_frequency) {
   std::string text = fmt::format("{} modes identified", outcome.found.modes.size());
   if (outcome.record) {
-    text += fmt::format(" up to {:g} Hz (identification.highest_frequency)", highest_frequency);
+    text += fmt::format(
+        " up to {:g} Hz (identification.highest_frequency) in the decay from {:.4g} to {:.4g} s",
+        highest_frequency, outcome.record->begin, outcome.record->end);
   }
   if (!outcome.found.missing.empty()) {
     text += fmt::format(", {} missing below the highest", outcome.found.missing.size());
