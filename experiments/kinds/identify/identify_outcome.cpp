@@ -194,6 +194,76 @@ std::string seconds_text(const std::vector<PluckedMode>& seconds) {
       fmt::join(texts, ", "));
 }
 
+// The largest amplitude of each channel: sensors of several kinds have units of their own.
+std::vector<double> scales_of(const std::vector<PluckedMode>& modes) {
+  std::vector<double> scales;
+  for (const PluckedMode& plucked : modes) {
+    scales.resize(plucked.mode.amplitude.size(), 0.0);
+    for (std::size_t c = 0; c < scales.size(); ++c) {
+      scales[c] = std::max(scales[c], std::abs(plucked.mode.amplitude[c]));
+    }
+  }
+  return scales;
+}
+
+// How alike two modes move the sensors, 1 where one shape is a multiple of the other (modal
+// assurance criterion; Allemang and Brown, 1982).
+double likeness(const DecayMode& a, const DecayMode& b, const std::vector<double>& scales) {
+  std::complex<double> product;
+  double one = 0.0, other = 0.0;
+  for (std::size_t c = 0; c < scales.size(); ++c) {
+    if (scales[c] == 0.0) continue;
+    const std::complex<double> first = a.amplitude[c] / scales[c];
+    const std::complex<double> second = b.amplitude[c] / scales[c];
+    product += std::conj(first) * second;
+    one += std::norm(first);
+    other += std::norm(second);
+  }
+  return std::norm(product) / (one * other);
+}
+
+// Two modes of a structure at one place differ in shape. A mode that changes with its amplitude is
+// fitted by several poles of one shape, beside each other and damped by multiples.
+std::vector<std::string> alike_in(const std::vector<PluckedMode>& modes) {
+  std::vector<std::string> alike;
+  const std::vector<double> scales = scales_of(modes);
+  for (std::size_t i = 1; i < modes.size(); ++i) {
+    const DecayMode &below = modes[i - 1].mode, &above = modes[i].mode;
+    const double reach = 3.0 * (below.pole.damping_ratio + above.pole.damping_ratio);
+    const bool is_near = above.pole.frequency - below.pole.frequency < reach * below.pole.frequency;
+    if (!is_near || below.amplitude.size() < 2) continue;
+    if (likeness(below, above, scales) < (below.amplitude.size() > 2 ? 0.98 : 0.995)) continue;
+    alike.push_back(
+        fmt::format("{:.6g} and {:.6g} Hz", below.pole.frequency, above.pole.frequency));
+  }
+  return alike;
+}
+
+std::vector<std::string> undamped_in(const std::vector<PluckedMode>& modes) {
+  std::vector<std::string> undamped;
+  for (const auto& [number, mode] : modes) {
+    if (mode.pole.damping_ratio > 3.0 * mode.deviation.damping_ratio) continue;
+    undamped.push_back(fmt::format("{:.5g} Hz", mode.pole.frequency));
+  }
+  return undamped;
+}
+
+void doubt_modes(const std::vector<PluckedMode>& modes, std::vector<std::string>& warnings) {
+  if (const auto alike = alike_in(modes); !alike.empty()) {
+    warnings.push_back(fmt::format(
+        "modes at one place have one shape: {}. One of which frequency or damping changes with the "
+        "amplitude looks like this; take a later part of the decay (structure.record.start), or "
+        "excite it less",
+        fmt::join(alike, ", ")));
+  }
+  if (const auto undamped = undamped_in(modes); !undamped.empty()) {
+    warnings.push_back(
+        fmt::format("no decay is told of the modes at {}: their damping ratios lie within three "
+                    "deviations of 0, and they may be noise, or something steady",
+                    fmt::join(undamped, ", ")));
+  }
+}
+
 }  // namespace
 
 std::string doubt_decay(const PluckIdentification& found, const PluckedRecord& record,
@@ -201,6 +271,7 @@ std::string doubt_decay(const PluckIdentification& found, const PluckedRecord& r
                         std::vector<std::string>& warnings) {
   if (!found.others.empty()) warnings.push_back(others_text(found.others));
   if (!found.seconds.empty()) warnings.push_back(seconds_text(found.seconds));
+  if (std::isnan(fundamental)) doubt_modes(found.modes, warnings);
   const std::vector<double> shares = shares_left(found, record.decay);
   for (std::size_t k = 0; k < shares.size() && !record.names.empty(); ++k) {
     if (shares[k] < 0.5) continue;

@@ -43,7 +43,8 @@ std::string rejection_of(const PluckIdentification& found, const PluckedRecord& 
 /// Of an outcome without modes.
 std::string why_nothing(const IdentifyOutcome& outcome);
 
-/// rejection_of(); warnings: modes without a number, and modes with a second pole.
+/// rejection_of(); warnings: modes without a number, and modes with a second pole; of a structure,
+/// modes of one shape at one place, and those without a decay.
 std::string doubt_decay(const PluckIdentification& found, const PluckedRecord& record,
                         double fundamental, const std::optional<StiffStringFit>& law,
                         std::vector<std::string>& warnings);

@@ -118,6 +118,26 @@ TEST_F(DecayingStructureTest, ASensorThatHearsNothingIsNamed) {
   EXPECT_THAT(result.summary, HasSubstr("% of n, which tells little"));
 }
 
+// Its frequency is a thousandth higher at first, as the square of the amplitude is.
+TEST_F(DecayingStructureTest, AModeThatChangesWithItsAmplitudeIsNamed) {
+  std::string text = "t [s],a1 [g],a2 [g],d [mm]\n";
+  const double omega = 2.0 * std::numbers::pi * 120.0, decay = 0.003 * omega;
+  const auto count = static_cast<std::size_t>(1.5 * kRate);
+  std::vector<double> normal(3 * count);
+  fill_standard_normal(StreamKey(6).with("noise"), normal);
+  for (std::size_t j = 0; j < count; ++j) {
+    const double t = static_cast<double>(j) / kRate, left = std::exp(-decay * t);
+    const double phase = omega * (t + 1e-3 * (1.0 - left * left) / (2.0 * decay));
+    const double motion = left * std::cos(phase);
+    text += fmt::format("{:.6f},{:.9g},{:.9g},{:.9g}\n", t, motion + 0.003 * normal[3 * j],
+                        -0.7 * motion + 0.003 * normal[3 * j + 1],
+                        0.4 * motion + 0.003 * normal[3 * j + 2]);
+  }
+  write("decay.csv", text);
+  const StudyResult result = run_document(document(kBand));
+  EXPECT_THAT(result.summary, HasSubstr("modes at one place have one shape: 1")) << result.summary;
+}
+
 TEST_F(DecayingStructureTest, IsNoStringAndHasNoForce) {
   write_decay(0.02);
   const auto mistakes = [&](const std::string& keys) {
