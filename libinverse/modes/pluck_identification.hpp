@@ -71,7 +71,8 @@ PluckIdentification identify_pluck(const DecayRecord& record, double fundamental
                                    const PluckOptions& options = {});
 
 /// What a second pole of a third of the amplitude, too near to be seen, may move the frequency of a
-/// mode by [Hz]; NaN for one whose second pole is known, and without error bars.
+/// mode by [Hz], and the damping ratio by the same share of the frequency (unseen_distance()); NaN
+/// for one whose second pole is known, and without error bars.
 double unseen_shift(const PluckIdentification& found, const PluckedMode& plucked);
 
 /// Throws InvalidInput, as identify_pluck() would, where `samples` at `sample_rate` [Hz] leave

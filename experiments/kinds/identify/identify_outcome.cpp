@@ -79,8 +79,8 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
        .meaning =
            found.full_rank
                ? "Deviations are the Cramér–Rao bound of the fit. A second pole of a third of the "
-                 "amplitude that the record does not show may move the frequency by the next "
-                 "column."
+                 "amplitude that the record does not show may move frequency and damping ratio by "
+                 "the columns beside theirs."
                : "Deviations are the spread over the orders of the realization: no error bars."},
       found.modes, [&](ResultVisitor& row, const PluckedMode& plucked) {
         const auto& [number, mode] = plucked;
@@ -102,6 +102,8 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
         row({.key = "zeta", .name = "damping ratio"}, mode.pole.damping_ratio);
         row({.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
             mode.deviation.damping_ratio);
+        row({.key = "zeta_unseen", .name = "moved by an unseen pole", .format = "{:.2g}"},
+            unseen_shift(found, plucked) / mode.pole.frequency);
         row({.key = "zeta_true", .name = "true damping ratio"},
             of_truth([&](std::size_t n) { return truth->basis.zeta[n]; }));
       });

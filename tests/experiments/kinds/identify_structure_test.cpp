@@ -138,6 +138,39 @@ TEST_F(DecayingStructureTest, AModeThatChangesWithItsAmplitudeIsNamed) {
   EXPECT_THAT(result.summary, HasSubstr("modes at one place have one shape: 1")) << result.summary;
 }
 
+// A twelfth of a half-width apart, half as loud, the other one is not seen: the deviation of noise
+// alone is a twentieth of what it moves the damping ratio by.
+TEST_F(DecayingStructureTest, AnUnseenPoleIsInTheColumnsForIt) {
+  constexpr Mode kPair[] = {{141.6, 0.0018, {1.0, 0.6, -0.3}}, {141.62, 0.0023, {0.5, 0.3, -0.15}}};
+  std::string text = "t [s],a1 [g],a2 [g],d [mm]\n";
+  const auto count = static_cast<std::size_t>(2.0 * kRate);
+  std::vector<double> normal(3 * count);
+  fill_standard_normal(StreamKey(8).with("noise"), normal);
+  for (std::size_t j = 0; j < count; ++j) {
+    const double t = static_cast<double>(j) / kRate;
+    text += fmt::format("{:.6f}", t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      double sum = 0.02 * normal[3 * j + k];
+      for (const auto& [frequency, ratio, amplitudes] : kPair) {
+        const double omega = 2.0 * std::numbers::pi * frequency;
+        sum += amplitudes[k] * std::exp(-ratio * omega * t) * std::cos(omega * t);
+      }
+      text += fmt::format(",{:.9g}", sum);
+    }
+    text += "\n";
+  }
+  write("decay.csv", text);
+  const StudyResult result = run_document(document(kBand));
+  EXPECT_EQ(result.status, report::Status::kOk) << result.answer;
+  const auto found = nlohmann::json::parse(result.files.at(0).second);
+  ASSERT_EQ(found["modes"].size(), 1u) << found.dump(1);
+  const auto of = [&](const char* key) { return found["modes"][0][key].get<double>(); };
+  const double off = std::abs(of("zeta") - kPair[0].ratio);
+  EXPECT_GT(off, 5.0 * of("zeta_sd"));
+  EXPECT_LT(off, 2.0 * of("zeta_unseen"));
+  EXPECT_LT(std::abs(of("f_hz") - kPair[0].frequency), 2.0 * of("f_unseen_hz"));
+}
+
 TEST_F(DecayingStructureTest, IsNoStringAndHasNoForce) {
   write_decay(0.02);
   const auto mistakes = [&](const std::string& keys) {
