@@ -139,7 +139,7 @@ TEST_F(DecayingStructureTest, AModeThatChangesWithItsAmplitudeIsNamed) {
 }
 
 // A twelfth of a half-width apart, half as loud, the other one is not seen: the deviation of noise
-// alone is a twentieth of what it moves the damping ratio by.
+// alone is less than a fifth of what it moves the damping ratio by.
 TEST_F(DecayingStructureTest, AnUnseenPoleIsInTheColumnsForIt) {
   constexpr Mode kPair[] = {{141.6, 0.0018, {1.0, 0.6, -0.3}}, {141.62, 0.0023, {0.5, 0.3, -0.15}}};
   std::string text = "t [s],a1 [g],a2 [g],d [mm]\n";
