@@ -1,6 +1,7 @@
 // What an identification found, in words, tables and figures.
 #include "experiments/kinds/identify/identify.hpp"
 #include "experiments/report/result.hpp"
+#include "libinverse/modes/tuning.hpp"
 
 namespace modcal {
 
@@ -234,7 +235,8 @@ std::vector<std::string> alike_in(const std::vector<PluckedMode>& modes) {
     const double reach = 3.0 * (below.pole.damping_ratio + above.pole.damping_ratio);
     const bool is_near = above.pole.frequency - below.pole.frequency < reach * below.pole.frequency;
     if (!is_near || below.amplitude.size() < 2) continue;
-    if (likeness(below, above, scales) < (below.amplitude.size() > 2 ? 0.98 : 0.995)) continue;
+    if (likeness(below, above, scales) < (below.amplitude.size() > 2 ? kOneShape : kOneShapeOfTwo))
+      continue;
     alike.push_back(
         fmt::format("{:.6g} and {:.6g} Hz", below.pole.frequency, above.pole.frequency));
   }
