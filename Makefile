@@ -3,7 +3,7 @@ PRESET ?= release
 # Further options of CMake's, such as -DMODCAL_WERROR=ON.
 OPTIONS ?=
 
-.PHONY: reproduce test sanitize fuzz mutation test-cluster python bench accuracy stress format tidy tidy-changed docs clean build
+.PHONY: reproduce test test-delivery sanitize fuzz mutation test-cluster python bench accuracy stress format tidy tidy-changed docs clean build
 .PHONY: packages packages-test packages-python packages-cluster packages-develop packages-fuzz
 
 build: packages
@@ -31,11 +31,17 @@ packages-develop:
 reproduce: build
 	@build/$(PRESET)/modcal reproduce table1
 
+# All that tells whether a change is right; LABELS takes other tests of the same build.
+LABELS ?= --label-exclude delivery
 test:
 	@cmake/install_packages.sh test python
 	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON -DMODCAL_PYTHON=ON >/dev/null
 	@cmake --build --preset $(PRESET)
-	@ctest --preset $(PRESET) --parallel $$(nproc)
+	@ctest --preset $(PRESET) --parallel $$(($$(nproc) + 1)) $(LABELS)
+
+# What is handed out (packages, wheel, reports in a browser and as PDFs, the pages' programs), and full disks, kills.
+test-delivery:
+	@$(MAKE) --no-print-directory test LABELS='--label-regex delivery'
 
 # Addresses, undefined behavior and threads: the tests that tests/CMakeLists.txt lists for them, or a GROUP of its own.
 SANITIZERS ?= asan-ubsan tsan

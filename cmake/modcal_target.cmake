@@ -12,6 +12,8 @@ target_compile_options(
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT MODCAL_TIDY)
   target_compile_options(modcal_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized
                                                 -fcx-limited-range)
+  # Units of many sources end before GCC has to look for memory to give back, which is a tenth of their time.
+  target_compile_options(modcal_flags INTERFACE --param=ggc-min-heapsize=1000000)
 endif()
 # In a unit of several sources a local name may be another file's (Clang), and GCC takes its sources for
 # headers, whose classes hold nothing unnamed. The preset dev warns of what shadows.

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libsim/base/random.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal::known_structures {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::vector<Complex> force_spectrum(const FrequencyGrid& grid, bool impact) {
   std::vector<double> normal(2 * grid.bins);

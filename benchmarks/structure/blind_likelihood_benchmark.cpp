@@ -3,9 +3,9 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "libinverse/structure/blind_likelihood.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace {
 
@@ -18,7 +18,6 @@ struct Problem {
 };
 
 Problem problem() {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
   Problem p;
   p.model.sensors.assign(4, SensorKind::kAcceleration);
   for (std::size_t n = 0; n < 30; ++n) {

@@ -94,8 +94,8 @@ std::vector<double> deviations_by_information(const ObjectiveFunction& function,
   Eigen::MatrixXd information, prior;
   function.evaluate(x, {.information = &information, .prior = &prior});
   information += prior;
-  constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  std::vector<double> deviations(x.size(), kUnknown);
+  constexpr double kNotTold = std::numeric_limits<double>::infinity();
+  std::vector<double> deviations(x.size(), kNotTold);
   const Eigen::VectorXd unit =
       information.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.asDiagonal() * information *

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "libinverse/modes/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
+#include "libsim/base/turn.hpp"
 #include "libsim/signal/mains_search.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "libsim/signal/tuning.hpp"
@@ -17,10 +17,9 @@ namespace modcal {
 namespace {
 
 using Eigen::Index;
-constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 // What find_mains() has where no more are seen, and the most that it looks for.
-enum : std::size_t { kFewLines = 8, kMostLines = 20 };
+enum : std::size_t { kFewHumLines = 8, kMostHumLines = 20 };
 
 double duration_of(const DecayRecord& decay) {
   return static_cast<double>(decay.samples()) / decay.sample_rate;
@@ -32,7 +31,7 @@ double half_width(const DecayPole& pole) { return pole.damping_ratio * pole.freq
 // A line keeps its amplitude. By how much ln of it may seem to fall along the record: what noise
 // lets a decay appear, and the width that the mains have as they wander.
 bool may_be_steady(const DecayMode& mode, double duration) {
-  const double turns = kFullTurn * duration;
+  const double turns = kTurn * duration;
   const double deviation = mode.deviation.damping_ratio;
   const double told = std::isnan(deviation) ? 0.0 : turns * mode.pole.frequency * deviation;
   return turns * half_width(mode.pole) <
@@ -59,7 +58,7 @@ std::vector<OwnLine> own_lines_of(const DecayRecord& decay, std::span<const Deca
 }
 
 double blackman_harris(double place) {
-  const double turn = kFullTurn * place;
+  const double turn = kTurn * place;
   return 0.35875 - 0.48829 * std::cos(turn) + 0.14128 * std::cos(2.0 * turn) -
          0.01168 * std::cos(3.0 * turn);
 }
@@ -87,8 +86,8 @@ std::vector<double> hum_in(const DecayRecord& decay, std::span<const DecayMode> 
   };
   if (!lines.empty() && is_off(50.0) && is_off(60.0)) return {};
   // Beside the last line that is seen the modes may hide another.
-  if (lines.size() > kFewLines) {
-    for (std::size_t h = lines.size() + 1; h <= kMostLines; ++h) {
+  if (lines.size() > kFewHumLines) {
+    for (std::size_t h = lines.size() + 1; h <= kMostHumLines; ++h) {
       lines.push_back(lines.front() * static_cast<double>(h));
     }
   }
@@ -133,7 +132,7 @@ Eigen::MatrixXd hum_columns(std::size_t samples, double rate, std::span<const do
   Eigen::MatrixXd columns(static_cast<Index>(samples), static_cast<Index>(4 * lines.size()));
   for (std::size_t h = 0; h < lines.size(); ++h) {
     const auto first = static_cast<Index>(4 * h);
-    const double turn = kFullTurn * lines[h] / rate;
+    const double turn = kTurn * lines[h] / rate;
     for (Index m = 0; m < columns.rows(); ++m) {
       const double place = 2.0 * static_cast<double>(m) / static_cast<double>(columns.rows()) - 1.0;
       const double cosine = std::cos(turn * static_cast<double>(m));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libsim/base/turn.hpp"
 #include "libsim/signal/fft.hpp"
 
 namespace modcal {
@@ -118,14 +119,13 @@ std::vector<DecayPole> poles_in_residual(const DampedSinusoidFit& fit, const Res
   std::ranges::stable_sort(order, std::greater(),
                            [&](std::size_t k) { return places[k].evidence; });
   std::vector<DecayPole> found;
-  constexpr double kRadians = 2.0 * std::numbers::pi;
   for (const std::size_t k : order) {
     const double decay = places[k].decay;
     const bool is_new = std::ranges::none_of(found, [&](const DecayPole& louder) {
-      const double width = std::max(decay, -louder.exponent().real()) / kRadians + 1.0 / duration;
+      const double width = std::max(decay, -louder.exponent().real()) / kTurn + 1.0 / duration;
       return std::abs(louder.frequency - scan.frequency(k)) < width;
     });
-    if (is_new) found.push_back(DecayPole::of_exponent({-decay, kRadians * scan.frequency(k)}));
+    if (is_new) found.push_back(DecayPole::of_exponent({-decay, kTurn * scan.frequency(k)}));
   }
   return found;
 }

@@ -37,7 +37,7 @@ void pack_block(const Eigen::MatrixXd& columns, Index first, Index rows, double*
   }
 }
 
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& upper) {
+Eigen::MatrixXd inverse_of_upper(const Eigen::MatrixXd& upper) {
   return upper.triangularView<Eigen::Upper>().solve(
       Eigen::MatrixXd::Identity(upper.rows(), upper.cols()));
 }
@@ -66,13 +66,13 @@ ColumnSpan::ColumnSpan(const Eigen::MatrixXd& columns) {
       found.info() == Eigen::Success &&
       (lower.diagonal().array() > kOwnOfColumn * lower.rowwise().norm().array()).all();
   if (is_told) {
-    orthogonal_ = root_ = inverse_of(lower.transpose());
+    orthogonal_ = root_ = inverse_of_upper(lower.transpose());
     return;
   }
   const Eigen::HouseholderQR<Eigen::MatrixXd> solver(columns);
   pack(solver.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), count));
   orthogonal_ = Eigen::MatrixXd::Identity(count, count);
-  root_ = inverse_of(solver.matrixQR().topRows(count));
+  root_ = inverse_of_upper(solver.matrixQR().topRows(count));
 }
 
 void ColumnSpan::pack(const Eigen::MatrixXd& columns) {

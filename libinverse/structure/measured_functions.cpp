@@ -9,19 +9,19 @@
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/base/turn.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
 
-constexpr double kFullTurn = 2.0 * std::numbers::pi;
 std::vector<double> powers_of(const std::vector<Complex>& values, std::size_t from = 0) {
   std::vector<double> powers;
   for (std::size_t m = from; m < values.size(); ++m) powers.push_back(std::norm(values[m]));
   return powers;
 }
 
-double spacing_hz(const FrequencyGrid& grid) { return grid.spacing / kFullTurn; }
+double spacing_hz(const FrequencyGrid& grid) { return grid.spacing / kTurn; }
 
 std::vector<Complex> mean_of(const std::vector<Transfers>& sessions, std::size_t k) {
   std::vector<Complex> mean(sessions.front()[k].size(), 0.0);
@@ -52,11 +52,11 @@ double weight_outside(double omega, double first, double last, double decay) {
 void multiply_by_factor(std::vector<Complex>& values, const ContourSpectra& spectra, double share,
                         const StreamKey& key) {
   if (share <= 0.0) return;
-  const double highest = spectra.s(spectra.count() - 1).imag() / kFullTurn;
+  const double highest = spectra.s(spectra.count() - 1).imag() / kTurn;
   std::vector<double> knots(2 * (static_cast<std::size_t>(highest / kReach) + 2));
   fill_standard_normal(key, knots);
   for (std::size_t m = 0; m < values.size(); ++m) {
-    const double place = spectra.s(m).imag() / kFullTurn / kReach, knot = std::floor(place);
+    const double place = spectra.s(m).imag() / kTurn / kReach, knot = std::floor(place);
     const auto i = 2 * static_cast<std::size_t>(knot);
     const double turn = 0.5 * std::numbers::pi * (place - knot);
     const Complex u = std::cos(turn) * Complex(knots[i], knots[i + 1]) +
@@ -71,10 +71,9 @@ ContourSpectra MeasuredFunctions::lines(std::size_t session, double low, double 
   const Transfers& response = sessions[session];
   MODCAL_REQUIRE(!response.empty() && sensors.size() == response.size(),
                  "{} kinds of sensors for {} response functions", sensors.size(), response.size());
-  ContourSpectra spectra{.grid = grid,
-                         .bins = bins_between(grid, kFullTurn * low, kFullTurn * high)};
+  ContourSpectra spectra{.grid = grid, .bins = bins_between(grid, kTurn * low, kTurn * high)};
   spectra.samples = 2 * (grid.bins - 1);
-  spectra.sample_rate = static_cast<double>(spectra.samples) * grid.spacing / kFullTurn;
+  spectra.sample_rate = static_cast<double>(spectra.samples) * grid.spacing / kTurn;
   MODCAL_REQUIRE(spectra.count() > 0, "no line of the response lies from {:g} Hz to {:g} Hz", low,
                  high);
   spectra.force.assign(spectra.count(), 1.0);
@@ -87,7 +86,7 @@ ContourSpectra MeasuredFunctions::lines(std::size_t session, double low, double 
       const Complex h = spectra.responses.back()[m];
       MODCAL_REQUIRE(std::isfinite(h.real()) && std::isfinite(h.imag()),
                      "response {} is not finite at {:g} Hz: leave that line out of the band", k + 1,
-                     spectra.s(m).imag() / kFullTurn);
+                     spectra.s(m).imag() / kTurn);
     }
   }
   return spectra;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal {
 namespace {
@@ -35,7 +35,6 @@ ContourSpectra ContourSpectra::of(const StructureRecord& record, double sigma, d
   MODCAL_REQUIRE(!record.responses.empty(), "a record needs at least {} response", 1);
   MODCAL_REQUIRE(sigma >= 0.0, "a contour at {:g} 1/s lies left of the axis: state 0 or more",
                  sigma);
-  constexpr double kTurn = 2.0 * std::numbers::pi;
   ContourSpectra result{.sample_rate = record.sample_rate, .samples = record.samples()};
   result.grid = FrequencyGrid::of_record(result.samples, result.sample_rate);
   result.grid.sigma = sigma;

@@ -5,10 +5,9 @@
 #include <pybind11/complex.h>
 #include <pybind11/stl.h>
 
-#include <numbers>
-
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "libinverse/structure/strikes/strike_fit.hpp"
+#include "libsim/base/turn.hpp"
 #include "libsim/model/transfer.hpp"
 #include "libsim/records/recording.hpp"
 #include "python/core/errors.hpp"
@@ -17,8 +16,6 @@
 
 namespace modcal::python {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 // The table of the modes of measured responses, K × lines from 0 Hz on.
 std::string fit_response(double step, const py::array_t<Complex, py::array::c_style>& responses,

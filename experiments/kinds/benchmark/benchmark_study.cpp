@@ -81,12 +81,12 @@ BenchmarkOutcome score(const CalibrateOptions& options, const SuccessOptions& su
 
 // Unknowns of the law in the order of ExpectedLimit::law.
 enum Unknown : std::size_t { kFundamental, kInharmonicity, kContact, kDamping, kUnknowns };
-using Covariance = std::array<std::array<double, kUnknowns>, kUnknowns>;
+using UnknownsCovariance = std::array<std::array<double, kUnknowns>, kUnknowns>;
 
 // Covariance of the others where one unknown is known after all.
-void know(Unknown known, Covariance& c) {
+void know(Unknown known, UnknownsCovariance& c) {
   if (!(c[known][known] > 0.0)) return;  // fixed already
-  const Covariance before = c;
+  const UnknownsCovariance before = c;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     for (std::size_t j = 0; j < kUnknowns; ++j) {
       c[i][j] -= before[i][known] * before[known][j] / before[known][known];
@@ -99,7 +99,7 @@ std::vector<double> law_bounds(const ExpectedLimit& limit, const CalibrateOption
   const StiffStringFit law = fit_stiff_string(frequencies_of(basis));
   std::array<double, kUnknowns> deviation = limit.law;
   deviation[kFundamental] /= law.fundamental;
-  Covariance c{};
+  UnknownsCovariance c{};
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     for (std::size_t j = 0; j < kUnknowns; ++j) {
       c[i][j] = limit.law_correlation[i][j] * deviation[i] * deviation[j];

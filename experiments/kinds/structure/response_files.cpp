@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "experiments/kinds/structure/structure_files.hpp"
+#include "libsim/base/turn.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/records/formats.hpp"
 
@@ -46,7 +46,6 @@ Transfers session_of(const ResponseFunctionOptions& options, const std::filesyst
     channels.push_back(response.channel);
   }
   ResponseFunctions read = read_response_functions(file, options.format, channels);
-  constexpr double kTurnOfLines = 2.0 * std::numbers::pi;
   const bool is_first = loaded.measured.empty();
   FrequencyGrid& grid = loaded.measured.grid;
   if (is_first) grid = read.grid;
@@ -54,9 +53,9 @@ Transfers session_of(const ResponseFunctionOptions& options, const std::filesyst
                      std::abs(grid.spacing - read.grid.spacing) < 1e-9 * grid.spacing,
                  "{} has lines up to {:g} Hz, {:g} Hz apart, {} up to {:g} Hz, {:g} Hz apart: "
                  "sessions need one grid",
-                 file.string(), read.grid.omega(read.grid.bins - 1) / kTurnOfLines,
-                 read.grid.spacing / kTurnOfLines, options.file,
-                 grid.omega(grid.bins - 1) / kTurnOfLines, grid.spacing / kTurnOfLines);
+                 file.string(), read.grid.omega(read.grid.bins - 1) / kTurn,
+                 read.grid.spacing / kTurn, options.file, grid.omega(grid.bins - 1) / kTurn,
+                 grid.spacing / kTurn);
   Transfers session;
   for (std::size_t k = 0; k < read.functions.size(); ++k) {
     ResponseFunction& function = read.functions[k];

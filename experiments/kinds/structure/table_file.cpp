@@ -11,11 +11,11 @@
 #include "experiments/runs/journal.hpp"
 #include "experiments/study/fingerprint.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
 // The table as a file states it.
 struct SensorOptions {
   std::string name, kind = "acceleration";

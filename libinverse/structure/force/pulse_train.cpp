@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double step_of(const StructureTable& table, double sample_rate) {
   return std::max(1.0 / (3.0 * table.high), 0.5 / sample_rate);

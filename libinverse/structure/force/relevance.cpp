@@ -29,7 +29,7 @@ double log_choices(double all, double some) {
 }
 
 // Of a lower triangle, by blocks of columns: what stands above them is zero.
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& lower) {
+Eigen::MatrixXd inverse_of_lower(const Eigen::MatrixXd& lower) {
   const Index size = lower.rows(), block = 64;
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(size, size);
   for (Index j = 0; j < size; j += block) {
@@ -56,7 +56,7 @@ Relevance posterior_of(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
   const Eigen::LLT<Eigen::MatrixXd> solver(matrix);
   const Eigen::VectorXd score = root.cwiseProduct(b(chosen)), scaled = solver.solve(score);
   result.mean(chosen) = root.cwiseProduct(scaled);
-  result.root = inverse_of(solver.matrixLLT()) * root.asDiagonal();
+  result.root = inverse_of_lower(solver.matrixLLT()) * root.asDiagonal();
   // The data may tell some combinations 1e16 times as well as others; then rounding is all there
   // is.
   const bool is_right =

@@ -109,7 +109,7 @@ NpyBytes bytes_of_member(const std::shared_ptr<Archive>& archive, std::uint64_t 
 }
 
 // "R1.unit" is the unit of R1; other names keep their dots.
-std::vector<std::string> names_of(std::string member) {
+std::vector<std::string> names_of_member(std::string member) {
   constexpr std::string_view kEnding = ".npy", kUnit = ".unit";
   member.resize(member.size() - kEnding.size());
   member = utf8_or_latin1(member);
@@ -137,7 +137,7 @@ std::shared_ptr<NpyArrays> arrays_of(const Path& path) {
                        (stat.valid & ZIP_STAT_NAME) != 0 && (stat.valid & ZIP_STAT_SIZE) != 0;
     if (!known || !std::string_view(stat.name).ends_with(".npy")) continue;
     const std::string place = fmt::format("{}: {}", path.string(), utf8_or_latin1(stat.name));
-    arrays->add(names_of(stat.name), place, stat.size, [archive, i, all = stat.size, place] {
+    arrays->add(names_of_member(stat.name), place, stat.size, [archive, i, all = stat.size, place] {
       return bytes_of_member(archive, i, all, place);
     });
   }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check_config_pdfs.sh REPORTS: prints the reports that write_config_reports has written into the
+# check_config_pdfs.sh REPORTS: prints the reports that configs_test has written into the
 # folder to PDF by headless Chromium and fails on blank pages, on words that overlap or
 # leave the page, on charts and tables that are cut, split over two pages or not beside each other, on headings
 # that end a page;

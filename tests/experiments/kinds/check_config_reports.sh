@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check_config_reports.sh REPORTS: opens the reports that write_config_reports has written into the
+# check_config_reports.sh REPORTS: opens the reports that configs_test has written into the
 # folder, in headless Chromium and fails on errors, on charts without a curve, on texts
 # of a figure that overlap or are cut, and on a page that is wider than its window. Exit code 77:
 # there is no browser.

@@ -1,4 +1,4 @@
-"""check_csv.py REPORTS EXAMPLES MODCAL: reads every CSV file of the reports that write_config_reports has written into the
+"""check_csv.py REPORTS EXAMPLES MODCAL: reads every CSV file of the reports that configs_test has written into the
 folder, of a calibration, of the example record and of a list, by pandas.read_csv(comment="#") and
 numpy.genfromtxt(names=True) as they are. Exit code 77: there is no pandas or no NumPy.
 """

@@ -1,16 +1,19 @@
 // Every file of configs/ loads, lints without a finding and runs; the paper's figures of merit
-// hold.
+// hold. The reports, with the figures that gnuplot draws, stay in MODCAL_CONFIG_REPORTS for the
+// tests that look at them, which find them by its file `pages`, a path a line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "experiments/loader.hpp"
+#include "experiments/report/report.hpp"
 #include "experiments/study/study.hpp"
 #include "tests/experiments/kinds/small_config.hpp"
 
@@ -41,18 +44,42 @@ std::vector<std::string> names_used_twice(const StudyResult& result) {
   return twice;
 }
 
-class Configs : public testing::TestWithParam<std::string> {};
+// Where the report of `file` was written; its warning fails the test.
+std::filesystem::path written_report(const std::string& file, const std::string& title,
+                                     const std::string& description, StudyResult result) {
+  report::Report report{.title = title, .description = description};
+  report.status_text = result.answer;
+  result.move_to(report, "Results", "Details");
+  std::filesystem::path name = std::filesystem::relative(file, MODCAL_CONFIGS);
+  const auto written =
+      write_report(report, std::filesystem::path(MODCAL_CONFIG_REPORTS) / name.replace_extension(),
+                   {.vector_figures = true});
+  EXPECT_EQ(written.warning, "");
+  return written.page;
+}
+
+class Configs : public testing::TestWithParam<std::string> {
+ protected:
+  static void SetUpTestSuite() {
+    std::filesystem::remove_all(MODCAL_CONFIG_REPORTS);
+    std::filesystem::create_directories(MODCAL_CONFIG_REPORTS);
+  }
+};
 
 TEST_P(Configs, RunsSmall) {
   const LoadedExperiment full = load_experiment(GetParam());
   ASSERT_EQ(messages(full), "");
   const LoadedExperiment small = load_small(GetParam(), full);
   ASSERT_EQ(messages(small), "");
-  const StudyResult result = run(small);
+  StudyResult result = run(small);
   EXPECT_EQ(result.status, report::Status::kOk);
   EXPECT_FALSE(result.blocks.empty());
   EXPECT_FALSE(result.summary.empty());
   EXPECT_THAT(names_used_twice(result), testing::IsEmpty());
+  std::ofstream pages(std::filesystem::path(MODCAL_CONFIG_REPORTS) / "pages", std::ios::app);
+  pages << written_report(GetParam(), small.title, small.description, std::move(result)).string()
+        << std::endl;
+  EXPECT_TRUE(pages);
 }
 
 void expect_resolved_reads_back(const LoadedExperiment& loaded) {

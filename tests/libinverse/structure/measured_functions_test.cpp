@@ -5,14 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "libsim/base/turn.hpp"
 #include "tests/refusal.hpp"
 
 namespace modcal::measured_functions_test {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kLines = 801;
 
 // Two modes as a sum over poles, without the code of the models.

@@ -5,9 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
+#include "libsim/base/turn.hpp"
 #include "libsim/records/formats.hpp"
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
@@ -17,8 +17,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 // The dataset of a normal mode (f, m, ζ, η) with real translations of the nodes 3 and 7.
 std::string normal_mode(double frequency, double mass, double viscous, double hysteretic,

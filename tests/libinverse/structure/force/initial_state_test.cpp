@@ -6,15 +6,15 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libinverse/structure/force/structure_force.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal::initial_state_test {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi, kRate = 2000.0;
+constexpr double kRate = 2000.0;
 constexpr std::size_t kSamples = 2000;
 
 StructureTable table() {

@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "libsim/base/random.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal::force_noise_test {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi, kRate = 2000.0;
+constexpr double kRate = 2000.0;
 constexpr std::size_t kSamples = 2000, kSensors = 4, kDraws = 24;
 const std::vector<ModalPole> kPoles = {{kTurn * 110.0, 0.02}, {kTurn * 173.0, 0.01}};
 

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libinverse/structure/strikes/strike_fit.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal::merged_modes_test {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kSensors = 3;
 
 // Lines of 2 % noise of a mode at 110 Hz and a pair at 173 Hz, 2 Hz apart: 1.2 half-widths.

@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libinverse/structure/measured_functions.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal::pole_search_test {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 // Two of them 6 % apart.
 const std::vector<ModalPole> kPoles = {
     {kTurn * 70.0, 0.01}, {kTurn * 74.0, 0.008}, {kTurn * 130.0, 0.006}, {kTurn * 190.0, 0.012}};

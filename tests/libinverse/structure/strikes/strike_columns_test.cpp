@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "libsim/base/turn.hpp"
+
 namespace modcal::strike_columns_test {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 // Displacement of x'' + 2ζωx' + ω²x = force, exact for a force that is linear between the samples.
 std::vector<double> response_of(const ModalPole& pole, const std::vector<double>& force,

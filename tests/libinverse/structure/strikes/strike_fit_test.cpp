@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal::strike_fit_test {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 const std::vector<ModalPole> kPoles = {{kTurn * 110.0, 0.02}, {kTurn * 173.0, 0.01}};
 const std::vector<SensorKind> kKinds(2, SensorKind::kDisplacement);
 constexpr double kConstants[2][2] = {{1.0, -0.7}, {0.4, 1.2}};  // by sensor and mode
