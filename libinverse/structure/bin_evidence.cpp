@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
+#include "libinverse/structure/bin_forces.hpp"
 #include "libinverse/structure/tuning.hpp"
+#include "libsim/base/turn.hpp"
 
 namespace modcal {
 namespace {
 
-double spacing_of(const ContourSpectra& spectra) {
-  return spectra.grid.spacing / (2.0 * std::numbers::pi);
-}
+double spacing_of(const ContourSpectra& spectra) { return spectra.grid.spacing / kTurn; }
 
 // E|F|² by what F̂ has and its variance explains; never less than a tenth of what F̂ has.
 std::vector<double> power_of_force(const ContourSpectra& spectra, const BinEvidence& evidence) {
@@ -32,27 +32,29 @@ std::vector<double> power_of_force(const ContourSpectra& spectra, const BinEvide
   return result;
 }
 
-// Squares of what the best force leaves of the sensors about every bin, over what is expected
+// Squares of what the best forces leave of the sensors about every bin, over what is expected
 // without `more`, per degree of freedom; tells the same of each sensor.
 std::vector<double> contradiction(const ContourSpectra& spectra, const Transfers& transfers,
                                   const std::vector<double>& more, BinVariances& variances) {
   const std::size_t sensors = transfers.size(), bins = spectra.count();
-  const BinEvidence whole = evidence_of(spectra, transfers, variances, kNoSensor);
-  std::vector<double> left(bins, 0.0);
+  const auto degrees = static_cast<double>(sensors - 1 - variances.others.size());
+  std::vector<double> left(bins, 0.0), power(sensors, 0.0);
   variances.by_sensor.assign(sensors, 0.0);
   variances.left.assign(sensors, 0.0);
-  for (std::size_t k = 0; k < sensors; ++k) {
-    double power = 0.0;
-    for (std::size_t m = 0; m < bins; ++m) {
-      const Complex force = whole.score[m] / whole.told[m], response = spectra.responses[k][m];
-      const double rest = std::norm(response - transfers[k][m] * force);
+  for (std::size_t m = 0; m < bins; ++m) {
+    const BinForces forces(spectra, transfers, variances, kNoSensor, m);
+    const Complex force = forces.force();
+    for (std::size_t k = 0; k < sensors; ++k) {
+      const double rest = std::norm(forces.left(k, force));
       const double own = rest / variances.of[k][m] * more[m];
-      power += std::norm(response);
+      power[k] += std::norm(spectra.responses[k][m]);
       variances.left[k] += rest;
-      left[m] += own / static_cast<double>(sensors - 1);
+      left[m] += own / degrees;
       variances.by_sensor[k] += own / static_cast<double>(bins);
     }
-    variances.left[k] = std::sqrt(variances.left[k] / power);
+  }
+  for (std::size_t k = 0; k < sensors; ++k) {
+    variances.left[k] = std::sqrt(variances.left[k] / power[k]);
   }
   return left;
 }
@@ -70,25 +72,19 @@ std::vector<std::vector<double>> spread_of(const StructureTable& table,
   return spread;
 }
 
-// (|H|² − E|δH|²)/|H|², the square of the true H over that of the one there is.
-double share_known(Complex transfer, double variance) {
-  const double power = std::norm(transfer);
-  return power > variance ? std::max(kLeastKnown, 1.0 - variance / power) : kLeastKnown;
-}
-
-// What the sensors other than `k` leave of the force that they tell.
+// What the sensors other than `k` leave of the forces that they tell.
 double left_by_others(const ContourSpectra& spectra, const Transfers& transfers,
-                      const BinVariances& variances, const BinEvidence& others, std::size_t k) {
+                      const BinVariances& variances, std::size_t k) {
+  const std::size_t forces_told = 1 + variances.others.size();
+  if (transfers.size() < forces_told + 2) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0.0;
-  for (std::size_t j = 0; j < transfers.size(); ++j) {
-    if (j == k) continue;
-    for (std::size_t m = 0; m < spectra.count(); ++m) {
-      const Complex left =
-          spectra.responses[j][m] - transfers[j][m] * (others.score[m] / others.told[m]);
-      sum += std::norm(left) / variances.of[j][m];
+  for (std::size_t m = 0; m < spectra.count(); ++m) {
+    const BinForces forces(spectra, transfers, variances, k, m);
+    for (std::size_t j = 0; j < transfers.size(); ++j) {
+      if (j != k) sum += std::norm(forces.left(j, forces.force())) / variances.of[j][m];
     }
   }
-  return sum / static_cast<double>(spectra.count() * (transfers.size() - 2));
+  return sum / static_cast<double>(spectra.count() * (transfers.size() - 1 - forces_told));
 }
 
 }  // namespace
@@ -108,13 +104,18 @@ Transfers transfers_of(const ModalModel& model, const ContourSpectra& spectra) {
 BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfers,
                         const BinVariances& variances, std::size_t left_out) {
   BinEvidence result{std::vector<double>(spectra.count()), std::vector<Complex>(spectra.count())};
+  if (!variances.others.empty()) {
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
+      const BinForces forces(spectra, transfers, variances, left_out, m);
+      result.told[m] = forces.told();
+      result.score[m] = forces.score();
+    }
+    return result;
+  }
   for (std::size_t k = 0; k < transfers.size(); ++k) {
     if (k == left_out) continue;
     for (std::size_t m = 0; m < spectra.count(); ++m) {
-      double weight = 1.0 / variances.of[k][m];
-      if (!variances.of_transfer.empty()) {
-        weight *= share_known(transfers[k][m], variances.of_transfer[k][m]);
-      }
+      const double weight = bin_weight(transfers, variances, k, m);
       result.told[m] += weight * std::norm(transfers[k][m]);
       result.score[m] += weight * std::conj(transfers[k][m]) * spectra.responses[k][m];
     }
@@ -122,16 +123,27 @@ BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfer
   return result;
 }
 
-BinVariances variances_of(const StructureTable& table, const ContourSpectra& spectra,
-                          const Transfers& transfers) {
-  const std::size_t sensors = transfers.size(), bins = spectra.count();
-  const std::vector<std::vector<double>> spread = spread_of(table, spectra);
-  BinVariances result{.of = spread};
-  const double noise_power = spectra.noise_power();
-  for (std::size_t k = 0; k < sensors; ++k) {
-    std::vector<double>& of_transfer = result.of_transfer.emplace_back(spread[k]);
+std::vector<std::vector<double>> transfer_variances(const StructureTable& table,
+                                                    const ContourSpectra& spectra) {
+  std::vector<std::vector<double>> result = spread_of(table, spectra);
+  for (std::size_t k = 0; k < result.size(); ++k) {
     const double scatter = table.measured.empty() ? table.scatters[k].modal : 1.0;
-    for (double& x : of_transfer) x *= scatter * scatter;
+    for (double& x : result[k]) x *= scatter * scatter;
+  }
+  return result;
+}
+
+BinVariances variances_of(const StructureTable& table, const ContourSpectra& spectra,
+                          const Transfers& transfers, std::vector<OtherForce> others) {
+  const std::size_t sensors = transfers.size(), bins = spectra.count();
+  BinVariances result{.of = spread_of(table, spectra), .others = std::move(others)};
+  const double noise_power = spectra.noise_power();
+  result.of_transfer = transfer_variances(table, spectra);
+  // Relative weights at first; of the size that they have where others are of known powers.
+  for (const OtherForce& other : result.others) {
+    for (std::vector<double>& of : result.of) {
+      for (std::size_t m = 0; m < bins; ++m) of[m] *= std::max(other.power[m], 1e-300);
+    }
   }
   std::vector<double> more(bins, 1.0);
   for (int round = 0; round < 4; ++round) {
@@ -150,11 +162,14 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
     for (std::size_t k = 0; k < sensors; ++k) {
       const double noise = table.scatters[k].noise;
       for (std::size_t m = 0; m < bins; ++m) {
-        result.of[k][m] =
-            more[m] * (power[m] * result.of_transfer[k][m] + noise * noise * noise_power) + 1e-300;
+        double model = power[m] * result.of_transfer[k][m];
+        for (const OtherForce& other : result.others) {
+          model += other.power[m] * other.of_transfer[k][m];
+        }
+        result.of[k][m] = more[m] * (model + noise * noise * noise_power) + 1e-300;
       }
     }
-    if (sensors < 2) continue;
+    if (sensors < 2 + result.others.size()) continue;
     const std::vector<double> left = contradiction(spectra, transfers, more, result);
     double mean = 0.0;
     for (const double x : left) mean += x / static_cast<double>(bins);
@@ -181,32 +196,30 @@ std::vector<SensorPrediction> predictions_of(const ContourSpectra& spectra,
                                              const Transfers& transfers,
                                              const BinVariances& variances) {
   std::vector<SensorPrediction> result;
-  if (transfers.size() < 2) return result;
+  if (transfers.size() < 2 + variances.others.size()) return result;
   for (std::size_t k = 0; k < transfers.size(); ++k) {
-    const BinEvidence others = evidence_of(spectra, transfers, variances, k);
     double power = 0.0, inside = 0.0, off = 0.0;
     for (std::size_t m = 0; m < spectra.count(); ++m) {
-      const Complex h = transfers[k][m], y = spectra.responses[k][m];
-      const Complex left = y - h * others.score[m] / others.told[m];
-      const double sd = std::sqrt(0.5 * (std::norm(h) / others.told[m] + variances.of[k][m]));
+      const BinForces others(spectra, transfers, variances, k, m);
+      const Complex left = others.left(k, others.force());
+      const double sd = std::sqrt(0.5 * (others.variance(k) + variances.of[k][m]));
       for (const double part : {left.real(), left.imag()}) {
         inside += std::abs(part) <= 1.959964 * sd ? 1.0 : 0.0;
       }
       off += std::norm(left);
-      power += std::norm(y);
+      power += std::norm(spectra.responses[k][m]);
     }
     result.push_back({.error = std::sqrt(off / power),
-                      .coverage = inside / (2.0 * static_cast<double>(spectra.count()))});
-    if (transfers.size() < 3) continue;
-    result.back().others = left_by_others(spectra, transfers, variances, others, k);
+                      .coverage = inside / (2.0 * static_cast<double>(spectra.count())),
+                      .others = left_by_others(spectra, transfers, variances, k)});
   }
   return result;
 }
 
-double contradiction_of(std::span<const double> left) {
+double contradiction_of(std::span<const double> left, std::size_t forces) {
   double power = 0.0;
   for (const double x : left) power += x * x;
-  return left.size() < 2 ? 0.0 : power / static_cast<double>(left.size() - 1);
+  return left.size() <= forces ? 0.0 : power / static_cast<double>(left.size() - forces);
 }
 
 std::optional<std::size_t> odd_one_out(std::span<const SensorPrediction> predicted) {
@@ -217,8 +230,10 @@ std::optional<std::size_t> odd_one_out(std::span<const SensorPrediction> predict
 
 std::optional<std::size_t> odd_of_many(const ContourSpectra& spectra, const Transfers& transfers,
                                        const BinVariances& variances) {
-  if (transfers.size() < 4) return std::nullopt;
-  if (!(contradiction_of(variances.left) >= kContradiction * kContradiction)) return std::nullopt;
+  const std::size_t forces = 1 + variances.others.size();
+  if (transfers.size() < 3 + forces) return std::nullopt;
+  if (!(contradiction_of(variances.left, forces) >= kContradiction * kContradiction))
+    return std::nullopt;
   return odd_one_out(predictions_of(spectra, transfers, variances));
 }
 

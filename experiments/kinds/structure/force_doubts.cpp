@@ -19,6 +19,11 @@ void reject(std::string why, StudyResult& result) {
   result.warn(result.answer = std::move(why));
 }
 
+bool stands_in_peaks(const StructureForce& found) {
+  return peakedness(Eigen::Map<const Eigen::VectorXd>(found.force.data(),
+                                                      std::ssize(found.force))) > kPeaked;
+}
+
 // A force that pushes one way has most of its power near 0 Hz. That is not told where the table's
 // band begins above, nor by velocities and accelerations, which vanish with the frequency. A smooth
 // force may have such a part; pulses may be taken for the sharp ends of one.
@@ -126,7 +131,19 @@ void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loa
   if (found.told < 1.0) return;  // sensors that hear nothing contradict nobody
   if (doubt_change(found, loaded, result)) return;
   const auto worst = std::ranges::max_element(found.sensor_left);
-  const double power = contradiction_of(found.sensor_left);
+  const double power = contradiction_of(found.sensor_left, found.forces);
+  if (found.forces > 1 && power >= kContradictionOfContacts * kContradictionOfContacts &&
+      found.misfit > kBeyond * kBeyond) {
+    return reject(
+        fmt::format(
+            "rejected: no forces at these {} contacts explain the responses together, {:.0f} "
+            "% of {} is left: compare the places of the contacts, order, sign and unit of the "
+            "channels with those of the tables; where that is the sensors' noise, state its "
+            "level as noise: of their sensors in the table",
+            found.forces, 100.0 * *worst,
+            loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]),
+        result);
+  }
   if (power < kContradiction * kContradiction) return;
   if (const std::optional<std::size_t> odd = odd_one_out(found.predicted)) {
     return reject(fmt::format("rejected: {} contradicts the other sensors, which agree without it: "
@@ -162,8 +179,7 @@ void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loa
         "channels are not those of the table",
         result);
   }
-  if (found.untried > 0.0 && peakedness(Eigen::Map<const Eigen::VectorXd>(
-                                 found.force.data(), std::ssize(found.force))) > kPeaked) {
+  if (found.untried > 0.0 && stands_in_peaks(found)) {
     const double part = found.window * kMostInstants / found.untried;
     reject(
         fmt::format(
@@ -237,6 +253,48 @@ void doubt_force(const StructureForce& found, const LoadedStructureRecord& loade
   if (loaded.kinds.size() > 1) doubt_sensors(found, loaded, result);
   // Names the cause where sensors contradict each other by it: its answer stands.
   doubt_begin(found, loaded, modes, result);
+}
+
+namespace {
+
+// Blows at one contact and at another hide each other's pulses.
+void doubt_peaks_beside(const StructureForce& found, StudyResult& result) {
+  if (found.shape != ForceShape::kSmooth || found.untried > 0.0 || !stands_in_peaks(found)) return;
+  reject(
+      "rejected: the force stands in peaks, as one of blows, whose height a smooth force does not "
+      "tell: state shape: impacts",
+      result);
+}
+
+}  // namespace
+
+void doubt_forces(const std::vector<ContactForce>& forces, const LoadedStructureRecord& loaded,
+                  const std::vector<StructureTable>& contacts, ForceShape stated,
+                  StudyResult& result) {
+  const StructureForce& first = forces.front().found;
+  if (forces.size() == 1) return doubt_force(first, loaded, contacts.front(), stated, result);
+  const bool is_any_told =
+      std::ranges::any_of(forces, [](const ContactForce& f) { return f.found.told >= 1.0; });
+  for (std::size_t p = 0; p < forces.size(); ++p) {
+    const StructureForce& found = forces[p].found;
+    StudyResult own;
+    if (found.told < 1.0 && is_any_told) {
+      own.warn("no force is told there beside the others: what its band holds may act");
+    } else {
+      doubt_slow_part(found, loaded, contacts[p].low, stated, own);
+      tell_unknowns(found, loaded, contacts[p], own);
+      doubt_peaks_beside(found, own);
+    }
+    for (const std::string& text : own.warnings) {
+      result.warn(fmt::format("{}: {}", forces[p].table, text));
+    }
+    if (own.status != report::Status::kFailed) continue;
+    result.status = report::Status::kFailed;
+    result.answer = fmt::format("{} ({})", own.answer, forces[p].table);
+  }
+  doubt_window(first, loaded, result);
+  doubt_sensors(first, loaded, result);
+  doubt_begin(first, loaded, contacts.front(), result);
 }
 
 }  // namespace modcal

@@ -1,9 +1,8 @@
 // What an identified force may be wrong by without its band holding it.
 #pragma once
 
-#include "experiments/kinds/structure/structure_files.hpp"
+#include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/study/study.hpp"
-#include "libinverse/structure/force/structure_force.hpp"
 
 namespace modcal {
 
@@ -12,5 +11,11 @@ namespace modcal {
 /// the shape that was asked for.
 void doubt_force(const StructureForce& found, const LoadedStructureRecord& loaded,
                  const StructureTable& modes, ForceShape stated, StudyResult& result);
+
+/// The same of several contacts at once, each by its name. One at which no force is told is an
+/// answer, if one is told at another.
+void doubt_forces(const std::vector<ContactForce>& forces, const LoadedStructureRecord& loaded,
+                  const std::vector<StructureTable>& contacts, ForceShape stated,
+                  StudyResult& result);
 
 }  // namespace modcal

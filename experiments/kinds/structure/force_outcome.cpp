@@ -108,21 +108,25 @@ void visit_sensors(const LoadedStructureRecord& loaded, const StructureForce& fo
 
 void ForceOutcome::visit(ResultVisitor& visitor) const {
   const double rate = loaded.record.sample_rate;
-  visitor.list(
+  const StructureForce& first = forces.front().found;
+  visitor.rows(
       {.key = "force",
        .table = "identified_force",
        .name = "Identified force",
-       .meaning = score
+       .meaning = forces.front().score
                       ? "The last number leaves out what the error has below the table's band: no "
                         "response tells that of the force, and a hammer's amplifier drifts."
                       : ""},
-      1, {}, [&](ResultVisitor& row, std::size_t) {
+      forces, [&](ResultVisitor& row, const ContactForce& contact) {
+        const StructureForce& found = contact.found;
+        const std::optional<ForceScore>& score = contact.score;
         double impulse = 0.0, peak = 0.0, squares = 0.0;
         for (std::size_t j = 0; j < found.force.size(); ++j) {
           impulse += found.force[j] / rate;
           if (std::abs(found.force[j]) > std::abs(peak)) peak = found.force[j];
           squares += found.deviation[j] * found.deviation[j];
         }
+        row({.key = "table"}, contact.table);
         row({.key = "shape"}, name_of(found.shape));
         row({.key = "untried_instants", .name = "instants not tried"},
             found.untried > 0.0 ? std::optional(found.untried) : std::nullopt);
@@ -141,21 +145,21 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
         row({.key = "coverage_above", .name = "above the lowest frequency", .format = "{:.3f}"},
             score ? std::optional(score->coverage_above) : std::nullopt);
       });
-  visit_sensors(loaded, found, visitor);
-  visitor({.key = "contour_per_s"}, found.sigma);
-  visitor({.key = "window_s"}, found.window);
+  visit_sensors(loaded, first, visitor);
+  visitor({.key = "contour_per_s"}, first.sigma);
+  visitor({.key = "window_s"}, first.window);
   visitor({.key = "weak_until_s"},
-          found.weak_until > 0.0 ? std::optional(found.weak_until) : std::nullopt);
-  visitor({.key = "rang_before"}, found.rang);
+          first.weak_until > 0.0 ? std::optional(first.weak_until) : std::nullopt);
+  visitor({.key = "rang_before"}, first.rang);
   visitor({.key = "left_out"}, left_out.empty() ? std::nullopt : std::optional(left_out));
-  visitor({.key = "background"}, found.background);
-  visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
-  visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
+  visitor({.key = "background"}, first.background);
+  visitor({.key = "evidence_impacts"}, known(first.evidence_impacts));
+  visitor({.key = "evidence_smooth"}, known(first.evidence_smooth));
   visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
-          known(found.rise));
+          known(first.rise));
   visitor({.key = "push_odds", .name = "ln of the odds of a push over blows", .format = "{:.2g}"},
-          known(found.push_odds));
-  visitor({.key = "misfit"}, known(found.misfit));
+          known(first.push_odds));
+  visitor({.key = "misfit"}, known(first.misfit));
   if (refined) refined->visit(visitor);
 }
 
@@ -183,23 +187,28 @@ std::string PlacesOutcome::sentence() const {
                      tables[where.best], where.probability[where.best], fmt::join(named, ", "));
 }
 
-report::Figure force_figure(const LoadedStructureRecord& loaded, const StructureForce& found) {
+report::Figure force_figure(const LoadedStructureRecord& loaded,
+                            const std::vector<ContactForce>& forces) {
   const double rate = loaded.record.sample_rate;
-  Series identified{.label = "identified"};
-  Series measured{.label = "measured", .color = report::ColorRole::kReference};
-  for (std::size_t j = 0; j < found.force.size(); ++j) {
-    const double at = static_cast<double>(j) / rate, half = 1.959964 * found.deviation[j];
-    identified.add(at, found.force[j], found.force[j] - half, found.force[j] + half);
-    if (!loaded.record.force.empty()) measured.add(at, loaded.record.force[j]);
-  }
   report::Figure figure{.id = "force",
                         .title = "Force at the contact",
-                        .caption = "Identified from the responses, with its 95 % band.",
-                        .panels = {{.x = {.label = "time", .unit = "s"},
-                                    .y = {.label = "force", .unit = "N"},
-                                    .series = {std::move(identified)}}}};
-  if (!measured.x.empty())
-    figure.panels[0].series.insert(figure.panels[0].series.begin(), measured);
+                        .caption = "Identified from the responses, with its 95 % band."};
+  if (forces.size() > 1) figure.title = "Forces at the contacts";
+  for (const ContactForce& contact : forces) {
+    const StructureForce& found = contact.found;
+    Series identified{.label = "identified"};
+    Series measured{.label = "measured", .color = report::ColorRole::kReference};
+    for (std::size_t j = 0; j < found.force.size(); ++j) {
+      const double at = static_cast<double>(j) / rate, half = 1.959964 * found.deviation[j];
+      identified.add(at, found.force[j], found.force[j] - half, found.force[j] + half);
+      if (contact.score) measured.add(at, loaded.record.force[j]);
+    }
+    report::Panel panel{.x = {.label = "time", .unit = "s"}, .y = {.label = "force", .unit = "N"}};
+    if (forces.size() > 1) panel.title = contact.table;
+    if (!measured.x.empty()) panel.series.push_back(std::move(measured));
+    panel.series.push_back(std::move(identified));
+    figure.panels.push_back(std::move(panel));
+  }
   return figure;
 }
 

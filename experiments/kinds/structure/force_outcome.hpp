@@ -29,10 +29,17 @@ struct ForceScore {
 ForceScore score_of(const StructureForce& found, const std::vector<double>& measured, double rate,
                     const StructureTable& table);
 
+/// The force at one contact.
+struct ContactForce {
+  std::string table;  ///< file of its modes
+  StructureForce found;
+  std::optional<ForceScore> score;
+};
+
+/// Of several contacts, what stands once is that of the first.
 struct ForceOutcome {
   const LoadedStructureRecord& loaded;
-  const StructureForce& found;
-  const std::optional<ForceScore>& score;
+  const std::vector<ContactForce>& forces;
   const std::string& left_out;  ///< name of the sensor that contradicts the others; empty: none
   const std::optional<RefinedModes>& refined;
   void visit(ResultVisitor& visitor) const;
@@ -46,7 +53,9 @@ struct PlacesOutcome {
   std::string sentence() const;
 };
 
-report::Figure force_figure(const LoadedStructureRecord& loaded, const StructureForce& found);
+/// A panel for each contact.
+report::Figure force_figure(const LoadedStructureRecord& loaded,
+                            const std::vector<ContactForce>& forces);
 
 /// Index of the largest force where it is known as well as elsewhere: what a smooth one is at the
 /// ends of the record is hardly told.

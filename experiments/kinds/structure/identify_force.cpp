@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/structure/force_doubts.hpp"
 #include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/refined_modes.hpp"
@@ -33,9 +32,27 @@ std::string sentence_of(const ForceScore& score, const StructureTable& modes) {
       100.0 * score.coverage, 100.0 * score.coverage_above, modes.low);
 }
 
-void add_signals(const StructureForce& force, double rate, bool as_sound, StudyResult& result) {
-  SignalFile file{"identified.csv", {{"f_c", "N", rate, force.force}}};
-  file.signals.push_back({"f_c_deviation", "N", rate, force.deviation});
+std::string sentences_of(const ForceOutcome& outcome, const StructureTable& modes,
+                         bool modes_first) {
+  const std::string of_modes = outcome.refined ? outcome.refined->sentence() : "";
+  std::string text = modes_first ? of_modes : "";
+  for (const ContactForce& contact : outcome.forces) {
+    if (outcome.forces.size() > 1) text += contact.table + ": ";
+    text += sentence_of(contact.found, outcome.loaded);
+    if (contact.score) text += sentence_of(*contact.score, modes);
+  }
+  return modes_first ? text : text + of_modes;
+}
+
+// f_c, of further contacts f_c2, f_c3 and so on.
+void add_signals(const std::vector<ContactForce>& forces, double rate, bool as_sound,
+                 StudyResult& result) {
+  SignalFile file{"identified.csv", {}};
+  for (std::size_t p = 0; p < forces.size(); ++p) {
+    const std::string name = p == 0 ? "f_c" : fmt::format("f_c{}", p + 1);
+    file.signals.push_back({name, "N", rate, forces[p].found.force});
+    file.signals.push_back({name + "_deviation", "N", rate, forces[p].found.deviation});
+  }
   if (as_sound) result.signal_files.push_back({"identified.wav", file.signals});
   result.signal_files.push_back(std::move(file));
 }
@@ -130,12 +147,17 @@ void IdentifyForceOptions::visit_keys(OptionVisitor& visitor) {
 
 void IdentifyForceOptions::visit(OptionVisitor& visitor) {
   visit_keys(visitor);
+  visitor("other_contacts",
+          "tables of the same structure and sensors driven at other contacts, where forces act as "
+          "well: all are identified; needs more sensors than contacts",
+          other_contacts);
   visitor("seed", "key of the draws", {.range = Range::non_negative()}, seed);
 }
 
 std::vector<std::string> IdentifyForceOptions::tables() const {
   std::vector<std::string> all = {table};
   all.insert(all.end(), other_places.begin(), other_places.end());
+  all.insert(all.end(), other_contacts.begin(), other_contacts.end());
   return all;
 }
 
@@ -143,84 +165,27 @@ std::vector<FileRead> IdentifyForceOptions::files_read() const {
   std::vector<FileRead> files;
   for (const std::string& file : tables()) {
     files.push_back({.name = file,
-                     .key = files.empty() ? "table" : "other_places",
+                     .key = files.empty()            ? "table"
+                            : other_contacts.empty() ? "other_places"
+                                                     : "other_contacts",
                      .named = files_named_by_table});
   }
   files.push_back(file_read(record));
   return files;
 }
 
-std::vector<Finding> IdentifyForceOptions::lint() const {
-  std::vector<Finding> findings = lint_responses("record.responses", record.responses.size());
-  if (!other_places.empty() && record.responses.size() == 1) {
-    add_finding(findings, "other_places",
-                "one response is explained by a force at any place: name a second sensor, or leave "
-                "the other places out");
-  }
-  if (refines && unchanged) {
-    add_finding(findings, "unchanged",
-                "modes that change: refines cannot be held: leave one of the two out");
-  }
-  if (refines && record.responses.size() == 1) {
-    add_finding(findings, "record.responses",
-                "one response is explained by any model and some force: modes are refined by the "
-                "responses of two sensors and more");
-  }
-  return findings;
-}
-
-std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::path& folder) const {
-  std::vector<Finding> findings;
-  std::size_t sensors = 0;
-  std::vector<SensorKind> kinds;
-  lint_making(findings, "table", [&] {
-    const StructureTable told = read_table(folder / table);
-    kinds = told.model.sensors;
-    if (refines) told.require_modes("change:");
-    const double least = told.measured.grid.sigma;
-    if (contour < least) {
-      add_finding(findings, "contour",
-                  "the response functions of {} were weighted by an exponential window, which is a "
-                  "contour of {:g} 1/s: state that or more",
-                  table, least);
-    }
-  });
-  for (std::size_t i = 0; i < other_places.size(); ++i) {
-    lint_making(findings, fmt::format("other_places.{}", i), [&] {
-      const StructureTable other = read_table(folder / other_places[i]);
-      MODCAL_REQUIRE(kinds.empty() || other.model.sensors == kinds,
-                     "{} has other sensors than {}: fit both to the same channels", other_places[i],
-                     table);
-    });
-  }
-  lint_making(findings, "record", [&] {
-    const LoadedStructureRecord loaded = load_structure_record(record, folder);
-    sensors = loaded.kinds.size();
-    if (write_sound) lint_sound("write_sound", loaded.record.sample_rate, findings);
-    if (kinds.empty()) return;
-    MODCAL_REQUIRE(sensors == kinds.size(),
-                   "{} responses for a table of {} sensors: name the same channels in its order",
-                   sensors, kinds.size());
-    for (std::size_t k = 0; k < sensors; ++k) {
-      MODCAL_REQUIRE(loaded.kinds[k] == kinds[k], "response {} is {}, in the table {}", k + 1,
-                     name_of(loaded.kinds[k]), name_of(kinds[k]));
-    }
-    MODCAL_REQUIRE(std::isnan(window) || window <= loaded.record.duration(),
-                   "window = {:g} s is longer than the record, {:g} s", window,
-                   loaded.record.duration());
-  });
-  return findings;
-}
-
 std::vector<PlanLine> IdentifyForceOptions::plan() const {
-  return {{fmt::format("identify the force from {} responses of {} by the modes of {}",
+  const std::string what =
+      other_contacts.empty() ? "the force"
+                             : fmt::format("the forces at {} contacts", 1 + other_contacts.size());
+  return {{fmt::format("identify {} from {} responses of {} by the modes of {}", what,
                        record.responses.size(), record.file, table),
            {{"responses", record.responses.size()}, {"record", record.file}, {"table", table}}}};
 }
 
 std::optional<ContactPlaces> IdentifyForceOptions::weighed(
     const std::vector<StructureTable>& places, const LoadedStructureRecord& loaded) const {
-  if (places.size() < 2) return std::nullopt;
+  if (other_places.empty()) return std::nullopt;
   // The longest part that any of the places asks for.
   double least = 0.0;
   ActingPart longest;
@@ -249,43 +214,51 @@ StructureForceOptions IdentifyForceOptions::force_options(
 
 StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_first) const {
   LoadedStructureRecord loaded = load_structure_record(record, context.folder, context.stop);
-  std::vector<StructureTable> places;
-  for (const std::string& file : tables()) places.push_back(read_table(context.folder / file));
-  const std::optional<ContactPlaces> where = weighed(places, loaded);
-  StructureTable& modes = places[where ? where->best : 0];
+  std::vector<std::string> names = tables();
+  std::vector<StructureTable> contacts;
+  for (const std::string& file : names) contacts.push_back(read_table(context.folder / file));
+  const std::optional<ContactPlaces> where = weighed(contacts, loaded);
+  if (where) {
+    contacts = {contacts[where->best]};
+    names = {names[where->best]};
+  }
   context.throw_if_interrupted();
-  const StructureForce force = structure_force(modes, loaded.record, force_options(loaded));
+  std::vector<ContactForce> forces;
+  for (StructureForce& found : structure_forces(contacts, loaded.record, force_options(loaded))) {
+    forces.push_back({.table = names[forces.size()], .found = std::move(found)});
+  }
+  const StructureForce& force = forces.front().found;
   std::string odd;
   if (force.left_out) {
     odd = leave_out(*force.left_out, loaded);
-    modes = modes.without_sensor(*force.left_out);
+    contacts.front() = contacts.front().without_sensor(*force.left_out);
   }
-  std::optional<ForceScore> score;
+  const StructureTable& modes = contacts.front();
   const double rate = loaded.record.sample_rate;
+  std::optional<ForceScore>& score = forces.front().score;
   if (!loaded.record.force.empty()) score = score_of(force, loaded.record.force, rate, modes);
   StudyResult result;
   std::optional<RefinedModes> refined;
   if (force.refined) refined.emplace(RefinedModes{modes, *force.refined});
-  const ForceOutcome outcome{loaded, force, score, odd, refined};
-  if (refined && modes_first) result.summary = refined->sentence();
-  result.summary += sentence_of(force, loaded);
-  if (score) result.summary += sentence_of(*score, modes);
+  const ForceOutcome outcome{loaded, forces, odd, refined};
+  result.summary = sentences_of(outcome, modes, modes_first);
   if (refined) {
-    if (!modes_first) result.summary += refined->sentence();
     result.files.emplace_back("table.yaml", table_text(refined->after()));
     refined->add_parameters(result.parameters);
   }
   result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
-  for (const std::string& text : modes.warnings) result.warn(text);
+  for (const StructureTable& table_of_one : contacts) {
+    for (const std::string& text : table_of_one.warnings) result.warn(text);
+  }
   tell_left_out(odd, where.has_value(), result);
   if (where) tell_places({tables(), *where}, force.rang, result);
-  doubt_force(force, loaded, modes, force_shape_of(shape), result);
+  doubt_forces(forces, loaded, contacts, force_shape_of(shape), result);
   if (refined) {
     for (const std::string& text : refined->doubts()) result.warn(text);
   }
   if (!context.numbers_alone) {
-    result.blocks.emplace_back(force_figure(loaded, force));
+    result.blocks.emplace_back(force_figure(loaded, forces));
     if (refined) {
       result.blocks.emplace_back(refined->figure());
       if (modes_first) std::iter_swap(result.blocks.end() - 1, result.blocks.end() - 2);
@@ -293,7 +266,7 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
   }
   result.add(report::tables_of(outcome));
   result.files.emplace_back("force.json", report::json_file(report::json_of(outcome)));
-  add_signals(force, rate, write_sound, result);
+  add_signals(forces, rate, write_sound, result);
   return result;
 }
 

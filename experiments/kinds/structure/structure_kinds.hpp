@@ -60,7 +60,8 @@ struct IdentifyForceOptions {
   static constexpr std::string_view kForStructures =
       "state table: modes.yaml and record: {file: ..., responses: [{channel: ...}, ...]}";
   std::string table;
-  std::vector<std::string> other_places;  ///< tables of the same structure driven elsewhere
+  std::vector<std::string> other_places;    ///< tables of the same structure driven elsewhere
+  std::vector<std::string> other_contacts;  ///< the same, where forces act as well
   StructureRecordOptions record;
   std::string shape = "auto";
   bool non_negative = false;
@@ -88,12 +89,14 @@ struct IdentifyForceOptions {
   StudyResult found(const StudyContext& context, bool modes_first) const;
 
  private:
-  /// The table first, then those of the other places.
+  /// The table first, then those of the other places or contacts.
   std::vector<std::string> tables() const;
   /// Which of several places it is; nothing of one.
   std::optional<ContactPlaces> weighed(const std::vector<StructureTable>& places,
                                        const LoadedStructureRecord& loaded) const;
   StructureForceOptions force_options(const LoadedStructureRecord& loaded) const;
+  void lint_tables(const std::filesystem::path& folder, std::vector<SensorKind>& kinds,
+                   std::vector<Finding>& findings) const;
 };
 
 /// What the channels of a structure's sensors state wrongly; path: of the list.

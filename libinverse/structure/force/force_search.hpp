@@ -12,11 +12,18 @@
 
 namespace modcal {
 
+/// Another contact of the structure, at which a force of such power acts as well.
+struct OtherContact {
+  StructureTable table;
+  std::vector<double> power;  ///< E|F_q|² of every bin of the part [N²]
+};
+
 /// Force signals in the window, linear in unknown amplitudes of pulses or bins.
 class ForceSearch {
  public:
   ForceSearch(const StructureTable& table, const StructureRecord& record,
-              const StructureForceOptions& options, double window);
+              const StructureForceOptions& options, double window,
+              std::span<const OtherContact> others = {});
 
   /// odd_of_many().
   std::optional<std::size_t> odd_sensor() const;
@@ -26,6 +33,8 @@ class ForceSearch {
   /// Refines the modes by the part where a change is stated, or the sensors contradict the table.
   bool refine(const StructureRecord& record);
   const StructureTable& table() const { return table_; }
+  /// E|F|² of every bin, as far as it is told.
+  std::vector<double> power();
   /// structure_force() of this part; the search is over then.
   StructureForce run();
 
@@ -45,8 +54,10 @@ class ForceSearch {
   /// the response where the record ends. Empty: more sensors, a structure that rang before, or
   /// nothing that shows is cut off.
   Eigen::VectorXd state_widths(const InitialState& state) const;
-  /// The force by another model, what rang fitted anew and off by what is not known of it.
+  /// The force by other models, of the other contacts, too, what rang fitted anew and off by what
+  /// is not known of it.
   Eigen::VectorXd force_by(const DrawnModels& models, std::size_t draw) const;
+  BinVariances with_drawn_contacts(std::size_t draw) const;
   bool wants_pulses(const BinEvidence& evidence);
   /// Pulses on a background of a share of the force's power: the share of largest evidence. All of
   /// it and no pulse is a smooth force.
@@ -66,7 +77,7 @@ class ForceSearch {
   Eigen::VectorXd by_models(const Eigen::VectorXd& best) const;
   /// Where the sensors contradict each other by more than the table says, so is it off by more.
   double contradiction() const;
-  /// Jackknife over the sensors; nothing below three.
+  /// Jackknife over the sensors; nothing without two that the forces do not take.
   Eigen::VectorXd by_sensors() const;
 
   StructureTable table_;
@@ -74,8 +85,10 @@ class ForceSearch {
   ContourSpectra spectra_;
   // recorded_: responses with what rang before and what the end cuts off; empty: as they are
   Transfers transfers_, recorded_;
-  double lines_outside_ = 0.0;  // power_of_lines_outside()
-  double last_rms_ = 0.0;       // of the first response's last tenth
+  std::vector<OtherContact> contacts_;  // the others
+  std::vector<OtherForce> others_;      // as their tables have them
+  double lines_outside_ = 0.0;          // power_of_lines_outside()
+  double last_rms_ = 0.0;               // of the first response's last tenth
   BinVariances variances_;
   std::vector<std::vector<double>> of_change_;  // empty: nothing was refined
   Eigen::Index samples_ = 0;

@@ -4,12 +4,11 @@
 
 #include "libinverse/structure/force/force_search.hpp"
 #include "libinverse/structure/tuning.hpp"
-#include "libsim/base/random.hpp"
 
 namespace modcal {
 
 BinVariances ForceSearch::variances() const {
-  BinVariances result = variances_of(table_, spectra_, transfers_);
+  BinVariances result = variances_of(table_, spectra_, transfers_, others_);
   for (std::size_t k = 0; k < of_change_.size(); ++k) {
     for (std::size_t m = 0; m < spectra_.count(); ++m) {
       double& own = result.of_transfer[k][m];
@@ -62,20 +61,6 @@ void ForceSearch::take_state_out() {
     variances_ = variances();
   }
   recorded_ = recorded;
-}
-
-Eigen::VectorXd ForceSearch::force_by(const DrawnModels& models, std::size_t draw) const {
-  const Transfers transfers = models.at(draw, spectra_);
-  if (recorded_.empty()) return force_of(evidence_of(spectra_, transfers, variances_, kNoSensor));
-  ContourSpectra own = spectra_;
-  own.responses = recorded_;
-  const InitialState state(models.modes(draw), own);
-  const InitialState::Fit fit = state.fit(transfers, variances_, power_, state_widths(state));
-  std::vector<double> normal(static_cast<std::size_t>(fit.state.size()));
-  fill_standard_normal(StreamKey(options_.seed).with("state").with(draw), normal);
-  own.responses = state.without(
-      fit.state + fit.root * Eigen::Map<const Eigen::VectorXd>(normal.data(), fit.state.size()));
-  return force_of(evidence_of(own, transfers, variances_, kNoSensor));
 }
 
 }  // namespace modcal

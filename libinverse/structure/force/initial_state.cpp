@@ -39,34 +39,104 @@ InitialState::InitialState(const ModalModel& model, const ContourSpectra& spectr
   }
 }
 
+namespace {
+
+// What the forces may do as well, of contacts one after the other: the matrix of Σ_k conj(h_ik)
+// h_jk/V_k + δ_ij/P_i of every bin as L D Lᴴ, by which each contact's part of the columns is
+// cleared of that of those before.
+class ForceElimination {
+ public:
+  // along: Σ_k conj(h_ik) x_k/V_k of the columns, seen: of the responses.
+  std::vector<Eigen::MatrixXcd> along;
+  std::vector<Eigen::VectorXcd> seen;
+  std::vector<Eigen::VectorXd> share;  // 1/D_i
+
+  ForceElimination(std::size_t contacts, Index bins, Index unknowns)
+      : along(contacts, Eigen::MatrixXcd::Zero(bins, unknowns)),
+        seen(contacts, Eigen::VectorXcd::Zero(bins)),
+        told_(contacts, Eigen::VectorXd::Zero(bins)),
+        between_(contacts) {
+    for (std::size_t i = 0; i < contacts; ++i) {
+      between_[i].assign(i, Eigen::VectorXcd::Zero(bins));
+    }
+  }
+
+  // One sensor's part: its weighted columns and responses, h of every contact.
+  void add(const std::vector<const Transfers*>& contacts, std::size_t k,
+           const Eigen::VectorXd& weight, const Eigen::MatrixXcd& weighted,
+           const Eigen::VectorXcd& response) {
+    using Spectrum = Eigen::Map<const Eigen::VectorXcd>;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Spectrum h((*contacts[i])[k].data(), weight.size());
+      along[i] += h.conjugate().asDiagonal() * weighted;
+      seen[i] += h.conjugate().cwiseProduct(weight.asDiagonal() * response);
+      told_[i] += weight.cwiseProduct(h.cwiseAbs2());
+      for (std::size_t j = 0; j < i; ++j) {
+        const Spectrum other((*contacts[j])[k].data(), weight.size());
+        between_[i][j] += h.conjugate().cwiseProduct(weight.asDiagonal() * other);
+      }
+    }
+  }
+
+  void eliminate(const std::vector<const std::vector<double>*>& powers) {
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+      const Eigen::Map<const Eigen::VectorXd> prior(powers[i]->data(), told_[i].size());
+      Eigen::VectorXd pivot = prior.cwiseInverse() + told_[i];
+      for (std::size_t j = 0; j < i; ++j) {
+        // L_ij D_j of the row, before it is divided by D_j.
+        Eigen::VectorXcd& row = between_[i][j];
+        for (std::size_t t = 0; t < j; ++t) {
+          row -= between_[i][t].cwiseProduct(between_[j][t].conjugate()).cwiseProduct(share[t]);
+        }
+        pivot -= share[j].cwiseProduct(row.cwiseAbs2());
+        along[i] -= row.cwiseProduct(share[j]).asDiagonal() * along[j];
+        seen[i] -= row.cwiseProduct(share[j]).cwiseProduct(seen[j]);
+      }
+      share.push_back(pivot.cwiseInverse());
+    }
+  }
+
+ private:
+  std::vector<Eigen::VectorXd> told_;
+  std::vector<std::vector<Eigen::VectorXcd>> between_;  // i, j < i
+};
+
+}  // namespace
+
 InitialState::Fit InitialState::fit(const Transfers& transfers, const BinVariances& variances,
                                     const std::vector<double>& power,
                                     const Eigen::VectorXd& widths) const {
   const Index unknowns = columns_.front().cols(), bins = columns_.front().rows();
+  std::vector<const Transfers*> contacts;
+  std::vector<const std::vector<double>*> powers;
+  for (const OtherForce& other : variances.others) {
+    contacts.push_back(&other.transfers);
+    powers.push_back(&other.power);
+  }
+  contacts.push_back(&transfers);
+  powers.push_back(&power);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
   Eigen::VectorXd score = Eigen::VectorXd::Zero(unknowns);
-  // Σ_k conj(h_k) x_k/V_k of every bin, of the columns and of the responses.
-  Columns along = Columns::Zero(bins, unknowns);
-  Eigen::VectorXcd seen = Eigen::VectorXcd::Zero(bins);
+  ForceElimination forces(contacts.size(), bins, unknowns);
   double power_of_all = 0.0;
-  Eigen::VectorXd told = Eigen::VectorXd::Zero(bins);
   for (std::size_t k = 0; k < columns_.size(); ++k) {
-    const Eigen::Map<const Eigen::VectorXcd> h(transfers[k].data(), bins),
-        y(spectra_.responses[k].data(), bins);
+    const Eigen::Map<const Eigen::VectorXcd> y(spectra_.responses[k].data(), bins);
     const Eigen::VectorXd weight =
         Eigen::Map<const Eigen::VectorXd>(variances.of[k].data(), bins).cwiseInverse();
     const Columns weighted = weight.asDiagonal() * columns_[k];
     matrix += (columns_[k].adjoint() * weighted).real();
     score += (weighted.adjoint() * y).real();
-    along += h.conjugate().asDiagonal() * weighted;
-    seen += h.conjugate().cwiseProduct(weight.asDiagonal() * y);
-    told += weight.cwiseProduct(h.cwiseAbs2());
+    forces.add(contacts, k, weight, weighted, y);
     power_of_all += weight.dot(y.cwiseAbs2());
   }
-  const Eigen::Map<const Eigen::VectorXd> prior(power.data(), bins);
-  const Eigen::VectorXd share = (prior.cwiseInverse() + told).cwiseInverse();
-  matrix -= (along.adjoint() * share.asDiagonal() * along).real();
-  score -= (along.adjoint() * (share.asDiagonal() * seen)).real();
+  forces.eliminate(powers);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Columns& along = forces.along[i];
+    const Eigen::VectorXd& share = forces.share[i];
+    matrix -= (along.adjoint() * share.asDiagonal() * along).real();
+    score -= (along.adjoint() * (share.asDiagonal() * forces.seen[i])).real();
+    power_of_all -= share.dot(forces.seen[i].cwiseAbs2());
+  }
   const double scale = 2.0 / spectra_.correlated();
   matrix *= scale, score *= scale;
   if (widths.size() > 0) matrix.diagonal() += widths.cwiseAbs2().cwiseInverse();
@@ -82,7 +152,7 @@ InitialState::Fit InitialState::fit(const Transfers& transfers, const BinVarianc
   result.root = size.asDiagonal() * solver.eigenvectors() * inverse.asDiagonal();
   result.state = result.root * (result.root.transpose() * score);
   result.gain = 0.5 * score.dot(result.state);
-  result.squares = scale * (power_of_all - share.dot(seen.cwiseAbs2()));
+  result.squares = scale * power_of_all;
   return result;
 }
 

@@ -21,8 +21,9 @@ class InitialState {
     double squares = 0.0;   ///< yᴴ S⁻¹ y of rest, twice the gain more than what c leaves
   };
 
-  /// c of largest likelihood, the force being of `power` E|F|² in every bin: S = P h hᴴ + V. Of
-  /// largest posterior probability where c has such `widths`; empty: nothing is known of it.
+  /// c of largest likelihood, the force being of `power` E|F|² in every bin: S = P h hᴴ + V, the
+  /// others of theirs (BinVariances::others). Of largest posterior probability where c has such
+  /// `widths`; empty: nothing is known of it.
   Fit fit(const Transfers& transfers, const BinVariances& variances,
           const std::vector<double>& power, const Eigen::VectorXd& widths = {}) const;
 

@@ -37,6 +37,7 @@ struct StructureForceOptions {
 
 struct StructureForce {
   ForceShape shape = ForceShape::kSmooth;
+  std::size_t forces = 1;         ///< that act at once, at as many contacts
   double sigma = 0.0;             ///< of the contour [1/s]
   double window = 0.0;            ///< until when it acts [s]
   double weak_until = 0.0;        ///< ActingPart
@@ -57,7 +58,7 @@ struct StructureForce {
   bool from_zero = false;  ///< the band begins at 0 Hz
   bool rang = false;       ///< when the record began, by what the responses tell
   double misfit =
-      0.0;  ///< (K − 1) sensors against the last, over what the scatter expects; NaN: K = 1
+      0.0;  ///< what the sensors contradict each other by, over what is expected; NaN: they cannot
   std::vector<double> sensor_misfit;        ///< rms of what each leaves over what is expected, K
   std::vector<double> sensor_left;          ///< the same over its response, K; both empty: K = 1
   std::vector<SensorPrediction> predicted;  ///< of each from the others, K; empty: K = 1
@@ -99,5 +100,15 @@ ActingPart acting_part(const StructureTable& table, const StructureRecord& recor
 /// sensors are not those of the table.
 StructureForce structure_force(const StructureTable& table, const StructureRecord& record,
                                const StructureForceOptions& options);
+
+/// Forces at several contacts at once, a table for each, of the same structure and sensors, of
+/// which there are more than contacts: structure_force() of each beside the others, as Gaussian
+/// forces of the powers that the responses tell of them, found in turn from what each of them alone
+/// would explain on. The window is what is stated, or all that is not quiet, and the structure that
+/// of its tables. Throws InvalidInput for tables of other sensors, whose bands have nothing in
+/// common, and too few sensors.
+std::vector<StructureForce> structure_forces(std::vector<StructureTable> tables,
+                                             const StructureRecord& record,
+                                             const StructureForceOptions& options);
 
 }  // namespace modcal

@@ -1,0 +1,117 @@
+// What is wrong with an experiment of kind "identify_force" before it runs.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/structure/structure_kinds.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+std::vector<Finding> IdentifyForceOptions::lint() const {
+  std::vector<Finding> findings = lint_responses("record.responses", record.responses.size());
+  if (!other_places.empty() && record.responses.size() == 1) {
+    add_finding(findings, "other_places",
+                "one response is explained by a force at any place: name a second sensor, or leave "
+                "the other places out");
+  }
+  if (!other_contacts.empty()) {
+    const std::size_t contacts = 1 + other_contacts.size(), sensors = record.responses.size();
+    if (sensors <= contacts) {
+      add_finding(findings, "other_contacts",
+                  "{} responses are explained by forces at {} contacts whatever they are: name {} "
+                  "sensors or more, or fewer contacts",
+                  sensors, contacts, contacts + 1);
+    }
+    if (!other_places.empty()) {
+      add_finding(findings, "other_places",
+                  "a place is looked for of one force alone: leave other_places or other_contacts "
+                  "out");
+    }
+    if (refines) {
+      add_finding(findings, "change",
+                  "modes are refined beside one force alone: leave change or other_contacts out");
+    }
+  }
+  if (refines && unchanged) {
+    add_finding(findings, "unchanged",
+                "modes that change: refines cannot be held: leave one of the two out");
+  }
+  if (refines && record.responses.size() == 1) {
+    add_finding(findings, "record.responses",
+                "one response is explained by any model and some force: modes are refined by the "
+                "responses of two sensors and more");
+  }
+  return findings;
+}
+
+void IdentifyForceOptions::lint_tables(const std::filesystem::path& folder,
+                                       std::vector<SensorKind>& kinds,
+                                       std::vector<Finding>& findings) const {
+  double low = 0.0, high = std::numeric_limits<double>::infinity();
+  lint_making(findings, "table", [&] {
+    const StructureTable told = read_table(folder / table);
+    kinds = told.model.sensors;
+    low = told.low, high = told.high;
+    if (refines) told.require_modes("change:");
+    const double least = told.measured.grid.sigma;
+    if (contour < least) {
+      add_finding(findings, "contour",
+                  "the response functions of {} were weighted by an exponential window, which is a "
+                  "contour of {:g} 1/s: state that or more",
+                  table, least);
+    }
+  });
+  const auto of_same_sensors = [&](const std::string& file) {
+    StructureTable other = read_table(folder / file);
+    MODCAL_REQUIRE(kinds.empty() || other.model.sensors == kinds,
+                   "{} has other sensors than {}: fit both to the same channels", file, table);
+    return other;
+  };
+  for (std::size_t i = 0; i < other_places.size(); ++i) {
+    lint_making(findings, fmt::format("other_places.{}", i),
+                [&] { of_same_sensors(other_places[i]); });
+  }
+  std::vector<std::string> before = {table};
+  for (std::size_t i = 0; i < other_contacts.size(); ++i) {
+    const std::string& file = other_contacts[i];
+    lint_making(findings, fmt::format("other_contacts.{}", i), [&] {
+      MODCAL_REQUIRE(std::ranges::find(before, file) == before.end(),
+                     "{} is named twice: each contact has a table of its own", file);
+      before.push_back(file);
+      const StructureTable other = of_same_sensors(file);
+      low = std::max(low, other.low), high = std::min(high, other.high);
+      MODCAL_REQUIRE(low < high,
+                     "the band of {} has nothing in common with that of those before: fit all "
+                     "tables in the same band",
+                     file);
+    });
+  }
+}
+
+std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::path& folder) const {
+  std::vector<Finding> findings;
+  std::size_t sensors = 0;
+  std::vector<SensorKind> kinds;
+  lint_tables(folder, kinds, findings);
+  lint_making(findings, "record", [&] {
+    const LoadedStructureRecord loaded = load_structure_record(record, folder);
+    sensors = loaded.kinds.size();
+    if (write_sound) lint_sound("write_sound", loaded.record.sample_rate, findings);
+    if (kinds.empty()) return;
+    MODCAL_REQUIRE(sensors == kinds.size(),
+                   "{} responses for a table of {} sensors: name the same channels in its order",
+                   sensors, kinds.size());
+    for (std::size_t k = 0; k < sensors; ++k) {
+      MODCAL_REQUIRE(loaded.kinds[k] == kinds[k], "response {} is {}, in the table {}", k + 1,
+                     name_of(loaded.kinds[k]), name_of(kinds[k]));
+    }
+    MODCAL_REQUIRE(std::isnan(window) || window <= loaded.record.duration(),
+                   "window = {:g} s is longer than the record, {:g} s", window,
+                   loaded.record.duration());
+  });
+  return findings;
+}
+
+}  // namespace modcal
