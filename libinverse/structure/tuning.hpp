@@ -150,11 +150,13 @@ constexpr double kFirstChange = 0.3, kLeastChange = 0.01, kMostChange = 2.0;
 /// Halved: not tried.
 constexpr double kOtherGain = 0.1;
 
-/// Share of the responses, an amplitude, that sensors contradict forces at several contacts by
-/// where they are refused, if it is kBeyond times as much as expected, too. Source:
-/// benchmarks/truth/contacts.py, two contacts and four sensors: of 49 right answers those that are
-/// beyond leave up to .047, of 24 for a force that acts elsewhere all leave .078 and more. Range
-/// tried: 0.03 to 0.12. Doubled: five of those 24 are accepted. Halved: six of the 49 are refused.
+/// Share of the responses, an amplitude, that sensors contradict forces at several contacts by where
+/// they are refused, if it is kBeyond times as much as expected, too.
+/// Source: benchmarks/truth/contacts.py, two contacts, four sensors: of 49 right answers those that
+/// are beyond leave up to .047, of 24 for a force that acts elsewhere all leave .078 and more.
+/// Range tried: 0.03 to 0.12.
+/// Doubled: five of those 24 are accepted.
+/// Halved: six of the 49 are refused.
 constexpr double kContradictionOfContacts = 0.06;
 
 /// Share of the responses, an amplitude, and how many times as much as expected, that sensors
