@@ -158,6 +158,22 @@ std::string BlockWriter::operator()(const Figure& figure) {
   return html + command_html(figure.command) + "</figcaption></figure>\n";
 }
 
+namespace {
+
+// Of rows that have none of what only some results have: the files keep such columns.
+std::vector<bool> columns_without_values(const Table& table) {
+  std::vector<bool> is_empty(table.columns.size(), !table.rows.empty());
+  for (const auto& row : table.rows) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      const bool none = std::holds_alternative<std::monostate>(row[j].value);
+      if (!none || !row[j].shown.empty() || row[j].task >= 0) is_empty[j] = false;
+    }
+  }
+  return is_empty;
+}
+
+}  // namespace
+
 std::string BlockWriter::operator()(const Table& table) const {
   constexpr std::size_t kShownRows = 12;
   const bool folded = !is_answer_ && table.rows.size() > kShownRows;
@@ -166,8 +182,10 @@ std::string BlockWriter::operator()(const Table& table) const {
                                typeset_html(table.title), table.rows.size())
                  : fmt::format("<h3>{}</h3>\n", typeset_html(table.title));
   html += "<div class=\"scroll\"><table><thead><tr>";
+  const std::vector<bool> is_empty = columns_without_values(table);
   std::vector<bool> is_text(table.columns.size());
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
+    if (is_empty[j]) continue;
     is_text[j] = std::any_of(table.rows.begin(), table.rows.end(), [j](const auto& row) {
       return std::holds_alternative<std::string>(row[j].value);
     });
@@ -177,8 +195,9 @@ std::string BlockWriter::operator()(const Table& table) const {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
     html += "<tr" + (table.row_tags.empty() ? "" : tags_attribute(table.row_tags[i])) + ">";
-    for (std::size_t j = 0; j < row.size(); ++j)
-      html += cell_html(row[j], table.columns[j], is_text[j]);
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (!is_empty[j]) html += cell_html(row[j], table.columns[j], is_text[j]);
+    }
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n<div class=\"about\">" + html_paragraphs(table.caption);

@@ -51,6 +51,22 @@ TEST(HtmlPage, HoldsEveryFigurePanelTableAndCommand) {
   EXPECT_THAT(page, HasSubstr("3 values ≤ 0 left out"));
 }
 
+// The files keep them.
+TEST(HtmlPage, LeavesColumnsWithoutAnyValueOut) {
+  Table table{.id = "forces", .columns = {{.key = "peak"}, {.key = "error"}, {.key = "task"}}};
+  Cell task;
+  task.task = 3;
+  table.rows = {{1.0, {}, {}}, {2.0, {}, task}};
+  const Report report{.sections = {{.blocks = {table}}}};
+  const std::string page = page_of(report);
+  EXPECT_THAT(page, HasSubstr(">peak"));
+  EXPECT_THAT(page, Not(HasSubstr(">error")));
+  EXPECT_THAT(page, HasSubstr(">task"));
+  EXPECT_EQ(table_csv(table), "peak,error,task\n1,,\n2,,\n");
+  table.rows[0][1] = 0.5;
+  EXPECT_THAT(page_of({.sections = {{.blocks = {table}}}}), HasSubstr(">error"));
+}
+
 TEST(HtmlPage, AsksTheNetworkForNothing) {
   const std::string page = page_of(sample_report());
   EXPECT_THAT(page, HasSubstr("content=\"default-src 'none';"));
