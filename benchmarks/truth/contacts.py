@@ -67,6 +67,7 @@ def main():
     p.add_argument("--kinds", nargs="+", choices=("strike", "smooth", "jumps"), default=["strike", "smooth"])
     p.add_argument("--contacts", type=int, default=2)
     p.add_argument("--more", type=int, default=2, help="sensors than contacts")
+    p.add_argument("--change", type=float, default=0, help="of the frequencies between the tables and the record; dampers and sensors by more")
     p.add_argument("--elsewhere", action="store_true", help="the last force acts where no table knows of: what is accepted is wrong")
     a = p.parse_args()
     answers, wrong, forces, errors = 0, 0, 0, []
@@ -88,6 +89,7 @@ def main():
         others = ", ".join(f"fit{i}/table.yaml" for i in range(1, a.contacts))
         for kind in a.kinds:
             acting = driven[:a.contacts - 1] + driven[a.contacts:] if a.elsewhere else driven
+            acting = [structures.changed(one, a.change) for one in acting]
             forces_at = [structures.force_of(kind, one, seed + 100 * i, 0) for i, one in enumerate(acting)]
             if kind != "smooth":  # not all at the same instant
                 forces_at = [lambda t, f=f, i=i: f(t - 0.02 * i * s.duration) for i, f in enumerate(forces_at)]

@@ -37,13 +37,13 @@ std::vector<double> power_of_force(const ContourSpectra& spectra, const BinEvide
 std::vector<double> contradiction(const ContourSpectra& spectra, const Transfers& transfers,
                                   const std::vector<double>& more, BinVariances& variances) {
   const std::size_t sensors = transfers.size(), bins = spectra.count();
-  const auto degrees = static_cast<double>(sensors - 1 - variances.others.size());
   std::vector<double> left(bins, 0.0), power(sensors, 0.0);
   variances.by_sensor.assign(sensors, 0.0);
   variances.left.assign(sensors, 0.0);
   for (std::size_t m = 0; m < bins; ++m) {
     const BinForces forces(spectra, transfers, variances, kNoSensor, m);
     const Complex force = forces.force();
+    const double degrees = static_cast<double>(sensors - 1) - forces.others_taken();
     for (std::size_t k = 0; k < sensors; ++k) {
       const double rest = std::norm(forces.left(k, force));
       const double own = rest / variances.of[k][m] * more[m];
@@ -140,10 +140,10 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
   const double noise_power = spectra.noise_power();
   result.of_transfer = transfer_variances(table, spectra);
   // Relative weights at first; of the size that they have where others are of known powers.
-  for (const OtherForce& other : result.others) {
-    for (std::vector<double>& of : result.of) {
-      for (std::size_t m = 0; m < bins; ++m) of[m] *= std::max(other.power[m], 1e-300);
-    }
+  for (std::size_t m = 0; m < bins && !result.others.empty(); ++m) {
+    double power_elsewhere = 1e-300;
+    for (const OtherForce& other : result.others) power_elsewhere += other.power[m];
+    for (std::vector<double>& of : result.of) of[m] *= power_elsewhere;
   }
   std::vector<double> more(bins, 1.0);
   for (int round = 0; round < 4; ++round) {

@@ -40,14 +40,18 @@ BinForces::BinForces(const ContourSpectra& spectra, const Transfers& transfers,
   const auto count = static_cast<Index>(variances.others.size());
   Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Zero(count, count);
   Eigen::VectorXcd with = Eigen::VectorXcd::Zero(count), seen = with;
+  double whole = 0.0;
+  Complex whole_score;
   for (std::size_t k = 0; k < transfers.size(); ++k) {
     if (k == left_out) continue;
-    const double weight = bin_weight(transfers, variances, k, m);
+    const double known = bin_weight(transfers, variances, k, m), weight = 1.0 / variances.of[k][m];
     const Complex h = transfers[k][m], y = spectra.responses[k][m];
-    told_ += weight * std::norm(h);
-    score_ += weight * std::conj(h) * y;
+    told_ += known * std::norm(h);
+    score_ += known * std::conj(h) * y;
     if (count == 0) continue;
     const Eigen::VectorXcd elsewhere = others_at(k);
+    whole += weight * std::norm(h);
+    whole_score += weight * std::conj(h) * y;
     with += weight * h * elsewhere.conjugate();
     seen += weight * y * elsewhere.conjugate();
     matrix += weight * elsewhere.conjugate() * elsewhere.transpose();
@@ -59,9 +63,20 @@ BinForces::BinForces(const ContourSpectra& spectra, const Transfers& transfers,
   covariance_ = inverse_of_hermitian(matrix);
   given_ = covariance_ * with;
   alone_ = covariance_ * seen;
-  // Rounding is all that is left where no sensor tells the contacts apart.
-  told_ = std::max(told_ - with.dot(given_).real(), 1e-14 * told_);
-  score_ -= with.dot(alone_);
+  // What h is off by takes its share of what is told of F, and nothing of what is told of the
+  // others. Rounding is all that is left where no sensor tells the contacts apart.
+  const double share = whole > 0.0 ? told_ / whole : 1.0;
+  told_ = share * std::max(whole - with.dot(given_).real(), 1e-14 * whole);
+  score_ = share * (whole_score - with.dot(alone_));
+}
+
+double BinForces::others_taken() const {
+  double taken = 0.0;
+  for (std::size_t q = 0; q < variances_.others.size(); ++q) {
+    const auto i = static_cast<Index>(q);
+    taken += 1.0 - covariance_(i, i).real() / variances_.others[q].power[m_];
+  }
+  return taken;
 }
 
 Complex BinForces::left(std::size_t k, Complex force) const {

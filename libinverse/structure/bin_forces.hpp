@@ -27,6 +27,8 @@ class BinForces {
   Complex left(std::size_t k, Complex force) const;
   /// Variance of what they make of it.
   double variance(std::size_t k) const;
+  /// Of the sensors' degrees of freedom what the others take: Σ_q 1 − (G⁻¹)_qq/P_q.
+  double others_taken() const;
 
  private:
   Eigen::VectorXcd others_at(std::size_t k) const;

@@ -6,13 +6,14 @@
 #include <span>
 #include <utility>
 
+#include "experiments/kinds/structure/force_doubt_parts.hpp"
 #include "libinverse/structure/force/force_band.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
-namespace {
+namespace force_doubts {
 
 void reject(std::string why, StudyResult& result) {
   result.status = report::Status::kFailed;
@@ -125,31 +126,22 @@ bool doubt_change(const StructureForce& found, const LoadedStructureRecord& load
   return true;
 }
 
+void reject_sensor(const std::string& name, StudyResult& result) {
+  reject(fmt::format("rejected: {} contradicts the other sensors, which agree without it: look for "
+                     "a gap, a gain, a delay, another sign or noise in it",
+                     name),
+         result);
+}
+
 // Sensors that contradict each other refuse the answer.
 void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loaded,
                    StudyResult& result) {
   if (found.told < 1.0) return;  // sensors that hear nothing contradict nobody
   if (doubt_change(found, loaded, result)) return;
   const auto worst = std::ranges::max_element(found.sensor_left);
-  const double power = contradiction_of(found.sensor_left, found.forces);
-  if (found.forces > 1 && power >= kContradictionOfContacts * kContradictionOfContacts &&
-      found.misfit > kBeyond * kBeyond) {
-    return reject(
-        fmt::format(
-            "rejected: no forces at these {} contacts explain the responses together, {:.0f} "
-            "% of {} is left: compare the places of the contacts, order, sign and unit of the "
-            "channels with those of the tables; where that is the sensors' noise, state its "
-            "level as noise: of their sensors in the table",
-            found.forces, 100.0 * *worst,
-            loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]),
-        result);
-  }
-  if (power < kContradiction * kContradiction) return;
+  if (contradiction_of(found.sensor_left) < kContradiction * kContradiction) return;
   if (const std::optional<std::size_t> odd = odd_one_out(found.predicted)) {
-    return reject(fmt::format("rejected: {} contradicts the other sensors, which agree without it: "
-                              "look for a gap, a gain, a delay, another sign or noise in it",
-                              loaded.names[*odd]),
-                  result);
+    return reject_sensor(loaded.names[*odd], result);
   }
   const std::string& name =
       loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())];
@@ -243,58 +235,17 @@ void doubt_window(const StructureForce& found, const LoadedStructureRecord& load
       100.0 * by_size(*behind) / peak, found.window));
 }
 
-}  // namespace
+}  // namespace force_doubts
 
 void doubt_force(const StructureForce& found, const LoadedStructureRecord& loaded,
                  const StructureTable& modes, ForceShape stated, StudyResult& result) {
+  using namespace force_doubts;
   doubt_slow_part(found, loaded, modes.low, stated, result);
   doubt_window(found, loaded, result);
   tell_unknowns(found, loaded, modes, result);
   if (loaded.kinds.size() > 1) doubt_sensors(found, loaded, result);
   // Names the cause where sensors contradict each other by it: its answer stands.
   doubt_begin(found, loaded, modes, result);
-}
-
-namespace {
-
-// Blows at one contact and at another hide each other's pulses.
-void doubt_peaks_beside(const StructureForce& found, StudyResult& result) {
-  if (found.shape != ForceShape::kSmooth || found.untried > 0.0 || !stands_in_peaks(found)) return;
-  reject(
-      "rejected: the force stands in peaks, as one of blows, whose height a smooth force does not "
-      "tell: state shape: impacts",
-      result);
-}
-
-}  // namespace
-
-void doubt_forces(const std::vector<ContactForce>& forces, const LoadedStructureRecord& loaded,
-                  const std::vector<StructureTable>& contacts, ForceShape stated,
-                  StudyResult& result) {
-  const StructureForce& first = forces.front().found;
-  if (forces.size() == 1) return doubt_force(first, loaded, contacts.front(), stated, result);
-  const bool is_any_told =
-      std::ranges::any_of(forces, [](const ContactForce& f) { return f.found.told >= 1.0; });
-  for (std::size_t p = 0; p < forces.size(); ++p) {
-    const StructureForce& found = forces[p].found;
-    StudyResult own;
-    if (found.told < 1.0 && is_any_told) {
-      own.warn("no force is told there beside the others: what its band holds may act");
-    } else {
-      doubt_slow_part(found, loaded, contacts[p].low, stated, own);
-      tell_unknowns(found, loaded, contacts[p], own);
-      doubt_peaks_beside(found, own);
-    }
-    for (const std::string& text : own.warnings) {
-      result.warn(fmt::format("{}: {}", forces[p].table, text));
-    }
-    if (own.status != report::Status::kFailed) continue;
-    result.status = report::Status::kFailed;
-    result.answer = fmt::format("{} ({})", own.answer, forces[p].table);
-  }
-  doubt_window(first, loaded, result);
-  doubt_sensors(first, loaded, result);
-  doubt_begin(first, loaded, contacts.front(), result);
 }
 
 }  // namespace modcal

@@ -233,6 +233,7 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
     contacts = {contacts[where->best]};
     names = {names[where->best]};
   }
+  share_band(contacts);
   context.throw_if_interrupted();
   std::vector<ContactForce> forces;
   for (StructureForce& found : structure_forces(contacts, loaded.record, force_options(loaded))) {

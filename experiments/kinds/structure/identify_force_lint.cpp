@@ -24,6 +24,15 @@ std::vector<Finding> IdentifyForceOptions::lint() const {
                   "sensors or more, or fewer contacts",
                   sensors, contacts, contacts + 1);
     }
+    std::vector<std::filesystem::path> before = {std::filesystem::path(table).lexically_normal()};
+    for (std::size_t i = 0; i < other_contacts.size(); ++i) {
+      const auto path = std::filesystem::path(other_contacts[i]).lexically_normal();
+      if (std::ranges::find(before, path) != before.end()) {
+        add_finding(findings, fmt::format("other_contacts.{}", i),
+                    "{} is named twice: each contact has a table of its own", other_contacts[i]);
+      }
+      before.push_back(path);
+    }
     if (!other_places.empty()) {
       add_finding(findings, "other_places",
                   "a place is looked for of one force alone: leave other_places or other_contacts "
@@ -50,18 +59,20 @@ void IdentifyForceOptions::lint_tables(const std::filesystem::path& folder,
                                        std::vector<SensorKind>& kinds,
                                        std::vector<Finding>& findings) const {
   double low = 0.0, high = std::numeric_limits<double>::infinity();
+  const auto lint_contour = [&](const StructureTable& told, const std::string& file) {
+    const double least = told.measured.grid.sigma;
+    if (!(contour < least)) return;
+    add_finding(findings, "contour",
+                "the response functions of {} were weighted by an exponential window, which is a "
+                "contour of {:g} 1/s: state that or more",
+                file, least);
+  };
   lint_making(findings, "table", [&] {
     const StructureTable told = read_table(folder / table);
     kinds = told.model.sensors;
     low = told.low, high = told.high;
     if (refines) told.require_modes("change:");
-    const double least = told.measured.grid.sigma;
-    if (contour < least) {
-      add_finding(findings, "contour",
-                  "the response functions of {} were weighted by an exponential window, which is a "
-                  "contour of {:g} 1/s: state that or more",
-                  table, least);
-    }
+    lint_contour(told, table);
   });
   const auto of_same_sensors = [&](const std::string& file) {
     StructureTable other = read_table(folder / file);
@@ -73,14 +84,11 @@ void IdentifyForceOptions::lint_tables(const std::filesystem::path& folder,
     lint_making(findings, fmt::format("other_places.{}", i),
                 [&] { of_same_sensors(other_places[i]); });
   }
-  std::vector<std::string> before = {table};
   for (std::size_t i = 0; i < other_contacts.size(); ++i) {
     const std::string& file = other_contacts[i];
     lint_making(findings, fmt::format("other_contacts.{}", i), [&] {
-      MODCAL_REQUIRE(std::ranges::find(before, file) == before.end(),
-                     "{} is named twice: each contact has a table of its own", file);
-      before.push_back(file);
       const StructureTable other = of_same_sensors(file);
+      lint_contour(other, file);
       low = std::max(low, other.low), high = std::min(high, other.high);
       MODCAL_REQUIRE(low < high,
                      "the band of {} has nothing in common with that of those before: fit all "

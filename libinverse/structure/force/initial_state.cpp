@@ -92,7 +92,8 @@ class ForceElimination {
         along[i] -= row.cwiseProduct(share[j]).asDiagonal() * along[j];
         seen[i] -= row.cwiseProduct(share[j]).cwiseProduct(seen[j]);
       }
-      share.push_back(pivot.cwiseInverse());
+      // Rounding is all that is left where no sensor tells the contacts apart.
+      share.push_back(pivot.cwiseMax(1e-14 * told_[i]).cwiseInverse());
     }
   }
 

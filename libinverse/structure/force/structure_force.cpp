@@ -112,6 +112,13 @@ class ContactForces {
   ContactForces(const std::vector<StructureTable>& tables, const StructureRecord& own,
                 const StructureForceOptions& options, double duration)
       : tables_(tables), own_(own), options_(options), duration_(duration) {
+    // Powers are of one contour.
+    if (std::isnan(options_.sigma)) {
+      options_.sigma = 2.0 / duration;
+      for (const StructureTable& table : tables) {
+        options_.sigma = std::max(options_.sigma, table.measured.grid.sigma);
+      }
+    }
     // Alone each explains what all have done: more than it has, and the others take it back in
     // turn.
     std::vector<OtherContact> alone;
@@ -143,7 +150,7 @@ class ContactForces {
 
   const std::vector<StructureTable>& tables_;
   const StructureRecord& own_;
-  const StructureForceOptions& options_;
+  StructureForceOptions options_;
   double duration_;
   std::vector<OtherContact> contacts_;  // empty: each is taken to act alone
 };
@@ -154,6 +161,8 @@ void require_sensors_of(const StructureTable& table, const StructureRecord& reco
                  table.model.pairs(), record.responses.size());
 }
 
+}  // namespace
+
 void share_band(std::vector<StructureTable>& tables) {
   double low = 0.0, high = std::numeric_limits<double>::infinity();
   for (const StructureTable& table : tables) {
@@ -162,8 +171,6 @@ void share_band(std::vector<StructureTable>& tables) {
   MODCAL_REQUIRE(low < high, "the tables of the contacts have no band in common");
   for (StructureTable& table : tables) table.low = low, table.high = high;
 }
-
-}  // namespace
 
 StructureRecord ActingPart::of(const StructureRecord& record) const {
   StructureRecord part = record;

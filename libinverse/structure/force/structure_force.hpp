@@ -101,6 +101,9 @@ ActingPart acting_part(const StructureTable& table, const StructureRecord& recor
 StructureForce structure_force(const StructureTable& table, const StructureRecord& record,
                                const StructureForceOptions& options);
 
+/// Leaves every table the band that all have in common. Throws InvalidInput where there is none.
+void share_band(std::vector<StructureTable>& tables);
+
 /// Forces at several contacts at once, a table for each, of the same structure and sensors, of
 /// which there are more than contacts: structure_force() of each beside the others, as Gaussian
 /// forces of the powers that the responses tell of them, found in turn from what each of them alone

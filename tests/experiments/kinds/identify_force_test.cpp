@@ -234,7 +234,23 @@ TEST_F(PlacesOf, ForcesActAtOnce) {
   EXPECT_LT(document["force"][0]["relative_error_in_band"].get<double>(), 0.1);
   EXPECT_GT(document["force"][0]["coverage"].get<double>(), 0.9);
   EXPECT_LT(std::abs(document["force"][1]["peak_n"].get<double>()), 5.0);
-  EXPECT_THAT(found.summary, HasSubstr(file + ": "));
+  EXPECT_THAT(found.answer, HasSubstr("; " + file + ": "));
+  const std::string silent = file + ": no force is told there beside the others";
+  EXPECT_THAT(found.warnings, Contains(HasSubstr(silent)));
+  // Whichever of them is the first, sensors that contradict both refuse the answer.
+  const std::string modes = kFolder + "plate_modes.json";
+  const std::string turned =
+      "record.responses=[{channel: a1}, {channel: a2, turned: true}, {channel: a3}, {channel: a4}]";
+  for (const auto& [first, second] : {std::pair(modes, file), std::pair(file, modes)}) {
+    const StudyResult wrong =
+        run("force_on_plate.yaml", {"table=" + first, "other_contacts=[" + second + "]", turned});
+    EXPECT_EQ(wrong.status, report::Status::kFailed) << first;
+    EXPECT_THAT(wrong.answer, testing::StartsWith("rejected: ")) << first;
+  }
+  EXPECT_THAT(refusal_of([&] {
+                run("force_on_plate.yaml", {"other_contacts=[" + file + ", /." + file + "]"});
+              }),
+              HasSubstr("is named twice: each contact has a table of its own"));
   const auto signals = found.signal_files.front().signals;
   ASSERT_EQ(signals.size(), 4u);
   EXPECT_EQ(signals[2].quantity, "f_c2");
