@@ -13,6 +13,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import yaml
 
 import structures
 
@@ -46,6 +47,27 @@ def measured_together(driven, forces_at, path):
     return t, truths
 
 
+def without_a_mode(table):
+    told = yaml.safe_load(table.read_text())
+    del told["modes"][len(told["modes"]) // 2]
+    table.write_text(yaml.safe_dump(told))
+
+
+def spoil(fault, record):
+    """Gives a record what it should not have."""
+    with open(record) as file:
+        header = file.readline().rstrip()
+    data = np.loadtxt(record, delimiter=",", skiprows=1)
+    y = data[:, 1:]
+    if fault in ("gain", "unit"):
+        y[:, 1] *= 1.05 if fault == "gain" else 1.2
+    elif fault == "late":
+        y[1:, 1] = y[:-1, 1].copy()
+    elif fault == "hum":
+        y += 0.05 * np.sqrt(2 * np.mean(y**2, axis=0)) * np.sin(2 * np.pi * 50 * data[:, :1])
+    np.savetxt(record, data, "%.10g", ",", header=header, comments="")
+
+
 def compare(path, t, truths):
     with open(path) as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))[1:]
@@ -68,6 +90,8 @@ def main():
     p.add_argument("--contacts", type=int, default=2)
     p.add_argument("--more", type=int, default=2, help="sensors than contacts")
     p.add_argument("--change", type=float, default=0, help="of the frequencies between the tables and the record; dampers and sensors by more")
+    p.add_argument("--fault", choices=("gain", "unit", "late", "hum", "mode"),
+                   help="the second sensor reads 5 or 20 %% too much or comes a sample late, 5 %% of hum, or tables that lack their middle mode")
     p.add_argument("--elsewhere", action="store_true", help="the last force acts where no table knows of: what is accepted is wrong")
     a = p.parse_args()
     answers, wrong, forces, errors = 0, 0, 0, []
@@ -86,6 +110,9 @@ def main():
                                          "  force: {channel: force}", sensors]))
         if any(codes):
             continue
+        if a.fault == "mode":
+            for i in range(a.contacts):
+                without_a_mode(folder / f"fit{i}/table.yaml")
         others = ", ".join(f"fit{i}/table.yaml" for i in range(1, a.contacts))
         for kind in a.kinds:
             acting = driven[:a.contacts - 1] + driven[a.contacts:] if a.elsewhere else driven
@@ -94,6 +121,8 @@ def main():
             if kind != "smooth":  # not all at the same instant
                 forces_at = [lambda t, f=f, i=i: f(t - 0.02 * i * s.duration) for i, f in enumerate(forces_at)]
             t, truths = measured_together(acting, forces_at, folder / f"{kind}.csv")
+            if a.fault and a.fault != "mode":
+                spoil(a.fault, folder / f"{kind}.csv")
             code = structures.run(a.build, folder / f"{kind}.yaml", folder / kind,
                                   ["kind: identify_force", "table: fit0/table.yaml", f"other_contacts: [{others}]", "record:",
                                    f"  file: {kind}.csv", sensors])

@@ -11,8 +11,8 @@ using namespace force_doubts;
 
 namespace {
 
-// The same of several contacts: each sees the sensors by errors of its own. What is left is noise,
-// or another contact, as a change of the structure is not looked for.
+// Each contact sees the sensors by the errors of its own table. What they leave is noise or another
+// contact, as a change of the structure is not looked for.
 void doubt_sensors_of_all(const std::vector<ContactForce>& forces,
                           const LoadedStructureRecord& loaded, StudyResult& result) {
   const auto left = [&](const ContactForce& f) {

@@ -44,15 +44,15 @@ std::string sentences_of(const ForceOutcome& outcome, const StructureTable& mode
   return modes_first ? text : text + of_modes;
 }
 
-// The first line of the summary, of several contacts a line each.
-std::string answer_of(const ForceOutcome& outcome, const std::string& summary) {
-  std::string answer = summary.substr(0, summary.find('\n'));
+// What the answer says of the contacts behind the first.
+std::string further_answer(const ForceOutcome& outcome) {
+  std::string text;
   for (std::size_t p = 1; p < outcome.forces.size(); ++p) {
     const ContactForce& contact = outcome.forces[p];
-    answer += fmt::format("; {}: {}", contact.table, sentence_of(contact.found, outcome.loaded));
-    answer.pop_back();
+    text += fmt::format("; {}: {}", contact.table, sentence_of(contact.found, outcome.loaded));
+    text.pop_back();
   }
-  return answer;
+  return text;
 }
 
 // f_c, of further contacts f_c2, f_c3 and so on.
@@ -258,7 +258,8 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
     result.files.emplace_back("table.yaml", table_text(refined->after()));
     refined->add_parameters(result.parameters);
   }
-  result.answer = answer_of(outcome, result.summary);
+  result.answer_by_summary();
+  result.answer += further_answer(outcome);
   for (const std::string& text : loaded.warnings) result.warn(text);
   for (const StructureTable& table_of_one : contacts) {
     for (const std::string& text : table_of_one.warnings) result.warn(text);
