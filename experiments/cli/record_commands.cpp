@@ -79,7 +79,11 @@ ExitCode convert_record(const ConvertArguments& arguments, const RecordFormat& t
     signals.push_back(signal_of(channel, recording.sample_rate));
   }
   for (const std::string& text : recording.warnings) warn("{}", text);
-  target.write(arguments.to, signals, version_text());
+  if (target.begins_at_zero && std::abs(recording.start) > 0.0) {
+    warn("{}: begins at 0; {} begins at {:.9g} s, for which {} files have no place", arguments.to,
+         arguments.from, recording.start, target.name);
+  }
+  target.write(arguments.to, signals, {.provenance = version_text(), .start = recording.start});
   add_to_json("file", arguments.to);
   add_to_json("channels", signals.size());
   say("{}: {} channel{}, {} samples at {} Hz\n", arguments.to, signals.size(),

@@ -8,7 +8,7 @@
 #include "experiments/config/help.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/model/string_model.hpp"
-#include "libsim/records/record_file.hpp"
+#include "libsim/records/formats.hpp"
 
 namespace modcal {
 namespace {
@@ -203,6 +203,50 @@ void list_faults(InspectionReport& report) {
   }
 }
 
+// Whether it holds functions of frequency and no record in time; a file that cannot be read is told
+// of as a record is.
+bool holds_functions(const std::filesystem::path& path, const InspectionOptions& options) {
+  try {
+    return std::isnan(options.sample_rate) &&
+           has_functions_alone(path, options.format, options.memory);
+  } catch (const InvalidInput&) {
+    return false;
+  }
+}
+
+InspectionReport inspect_functions(const std::filesystem::path& path,
+                                   const InspectionOptions& options) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const FileFunctions all = read_functions(path, options.format);
+  InspectionReport report{.file = path.string(),
+                          .format = std::string(record_format(path, options.format).meaning),
+                          .sample_rate = kUnknown,
+                          .rate_source = {},
+                          .time_jitter = kUnknown,
+                          .frames = all.functions.front().hertz.size(),
+                          .measured = false,
+                          .channels = {},
+                          .problems = {},
+                          .problem_count = 0,
+                          .warnings = all.warnings,
+                          .record = {}};
+  const std::vector<double>& hertz = all.functions.front().hertz;
+  report.functions = {.responses = {}, .first = hertz.front(), .last = hertz.back()};
+  for (const FileFunction& function : all.functions) {
+    report.channels.push_back({.name = function.name,
+                               .kind = std::string(text_of(function.what)),
+                               .unit = function.whole_unit(),
+                               .levels = {},
+                               .clipping = {},
+                               .noise_rms = kUnknown,
+                               .fault = {}});
+    if (function.what == FrequencyFunction::kResponse) {
+      report.functions->responses.push_back(function.name);
+    }
+  }
+  return report;
+}
+
 }  // namespace
 
 InspectionReport inspect(const std::filesystem::path& path, const InspectionOptions& options) {
@@ -210,6 +254,9 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
   std::error_code unreadable;
   const bool large = std::filesystem::file_size(path, unreadable) > kMeasuredBytes && !unreadable;
   const bool headers_only = !unreadable && (large || options.headers_only);
+  if (!unreadable && !headers_only && holds_functions(path, options)) {
+    return inspect_functions(path, options);
+  }
   Recording recording = read_record(path, options.format,
                                     {.sample_rate = options.sample_rate,
                                      .survey = true,

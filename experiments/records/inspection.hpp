@@ -39,6 +39,12 @@ struct StructureChannels {
   std::string force;  ///< empty: no channel is one
 };
 
+/// What a file of functions of frequency holds.
+struct FunctionsInspection {
+  std::vector<std::string> responses;  ///< names of response functions
+  double first, last;                  ///< lines of the first function [Hz]
+};
+
 struct InspectionReport {
   std::string file;
   std::string format;
@@ -54,6 +60,8 @@ struct InspectionReport {
   RecordOptions record;  ///< a proposal: the channels by their names or their order
   /// The proposal in its place of a force beside accelerations or velocities, and of motion alone.
   std::optional<StructureChannels> structure = std::nullopt;
+  /// Of a file of functions of frequency alone, which the channels are then; frames: its lines.
+  std::optional<FunctionsInspection> functions = std::nullopt;
 };
 
 /// Reads the file and measures every channel, of a large one the headers alone; errors in its rows
@@ -66,7 +74,8 @@ std::string text(const InspectionReport& report);
 nlohmann::ordered_json json(const InspectionReport& report);
 /// The beginning of an experiment's YAML file: the `record:` section as proposed, and with the
 /// numbers left empty that only the user knows (the reader asks for them) the string and the bow of
-/// kind invert, or the band of kind fit_modes. Where no force was measured, identify_force's.
+/// kind invert, or the band of kind fit_modes. Where no force was measured, identify_force's; of a
+/// file of response functions fit_modes by these.
 std::string stanza(const InspectionReport& report);
 
 }  // namespace modcal

@@ -79,6 +79,33 @@ ordered_json channel_json(const ChannelInspection& channel, bool measured) {
   return result;
 }
 
+constexpr const char* kBand =
+    "low:  # from where on the sensors hear the modes, as 10 Hz\n"
+    "high:  # to where the blow drives them, as 600 Hz\n";
+
+std::string functions_stanza(const InspectionReport& report) {
+  std::string text = fmt::format("kind: fit_modes\nfunctions:\n  file: {}\n  responses:\n",
+                                 yaml_string(report.file));
+  for (const std::string& name : report.functions->responses) {
+    text += fmt::format("    - {{channel: {}}}\n", yaml_string(name));
+  }
+  return text + kBand;
+}
+
+// How its values lie in time, or over frequency.
+std::string grid_text(const InspectionReport& report) {
+  const std::size_t count = report.channels.size();
+  const char* const plural = count == 1 ? "" : "s";
+  if (report.functions) {
+    return fmt::format("  {} function{} of frequency, {} lines from {:g} to {:g} Hz\n", count,
+                       plural, report.frames, report.functions->first, report.functions->last);
+  }
+  return fmt::format("  {} channel{}, {} samples at {} Hz ({}), {} s\n", count, plural,
+                     report.frames, number(report.sample_rate),
+                     report.rate_source.empty() ? "not stated" : report.rate_source,
+                     number(duration(report)));
+}
+
 std::string structure_stanza(const InspectionReport& report) {
   const StructureChannels& found = *report.structure;
   std::string record = fmt::format("record:\n  file: {}\n", yaml_string(report.file));
@@ -94,19 +121,13 @@ std::string structure_stanza(const InspectionReport& report) {
     return "kind: identify_force\ntable:  # modes of this structure, which fit_modes writes\n" +
            record;
   }
-  return "kind: fit_modes\n" + record +
-         "low:  # from where on the sensors hear the modes, as 10 Hz\n"
-         "high:  # to where the blow drives them, as 600 Hz\n";
+  return "kind: fit_modes\n" + record + kBand;
 }
 
 }  // namespace
 
 std::string text(const InspectionReport& report) {
-  std::string result = fmt::format(
-      "{}\n  {}\n  {} channel{}, {} samples at {} Hz ({}), {} s\n", report.file, report.format,
-      report.channels.size(), report.channels.size() == 1 ? "" : "s", report.frames,
-      number(report.sample_rate), report.rate_source.empty() ? "not stated" : report.rate_source,
-      number(duration(report)));
+  std::string result = fmt::format("{}\n  {}\n{}", report.file, report.format, grid_text(report));
   if (std::isfinite(report.time_jitter)) {
     result += fmt::format(
         "  time column: at most {:.3g} s ({:.3g} sampling periods) off a uniform "
@@ -116,7 +137,8 @@ std::string text(const InspectionReport& report) {
   for (const ChannelInspection& channel : report.channels) {
     result += channel_text(channel, report.measured);
   }
-  result += report.measured
+  result += report.functions ? ""
+            : report.measured
                 ? fmt::format(
                       "  (noise is taken to be white: its level between {} and {} of the Nyquist "
                       "frequency, extended to all frequencies)\n",
@@ -150,6 +172,7 @@ ordered_json json(const InspectionReport& report) {
 }
 
 std::string stanza(const InspectionReport& report) {
+  if (report.functions) return functions_stanza(report);
   if (report.structure) return structure_stanza(report);
   RecordOptions record = report.record;
   StringModel string{.modes = 0};

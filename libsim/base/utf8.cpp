@@ -46,6 +46,19 @@ std::size_t first_not_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
+void append_utf8(std::uint32_t letter, std::string& text) {
+  if (letter < 0x80) {
+    text += static_cast<char>(letter);
+    return;
+  }
+  const int more = letter < 0x800 ? 1 : letter < 0x10000 ? 2 : 3;
+  constexpr std::array<std::uint32_t, 4> kFirst = {0, 0xc0, 0xe0, 0xf0};
+  text += static_cast<char>(kFirst[static_cast<std::size_t>(more)] | (letter >> (6 * more) & 0x3f));
+  for (int i = more - 1; i >= 0; --i) {
+    text += static_cast<char>(0x80 | (letter >> (6 * i) & 0x3f));
+  }
+}
+
 std::size_t count_characters(std::string_view text) {
   return text.size() -
          static_cast<std::size_t>(std::count_if(text.begin(), text.end(), is_continuation));

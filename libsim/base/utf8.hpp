@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,9 @@ std::size_t utf8_size(std::string_view text);
 
 /// Place of the first byte that is not UTF-8; npos where all are.
 std::size_t first_not_utf8(std::string_view text);
+
+/// Appends a character by its code point (< 0x110000).
+void append_utf8(std::uint32_t letter, std::string& text);
 
 /// Number of characters of UTF-8 text.
 std::size_t count_characters(std::string_view text);

@@ -25,8 +25,9 @@ class CsvHandler {
   virtual void end_row(std::size_t fields) = 0;
 };
 
-/// A CSV file opened for one pass (RFC 4180, with comment lines; the separator is a tab, else a
-/// semicolon, else a comma, the first of these that stands in the header; LF, CRLF or CR ends a
+/// A CSV file opened for one pass (RFC 4180, with comment lines; the separator is the one that a
+/// first line "sep=;" states, else a tab, a semicolon or a comma, the first of these that stands in
+/// the header; LF, CRLF or CR ends a
 /// line; a UTF-8 byte order mark is skipped). Memory: one line.
 class CsvFile {
  public:
@@ -125,7 +126,7 @@ std::string heading_text(std::string_view name, std::string_view unit);
 // What the file tells of its sampling: columns of instants, or a comment.
 
 /// As parse_heading(), and of a time or a force the unit may stand behind another mark: "time/ms",
-/// "t_s", "F_l/mN".
+/// "t_s", "F_l/mN"; behind that of a time a number: "Time (s) 2".
 ColumnHeading parse_column_heading(std::string_view text);
 
 /// Those named t or time without a unit, and those whose unit is one of time.
@@ -145,9 +146,8 @@ class TimeColumns {
   bool stand_behind_ = false;
 };
 
-/// The rate [Hz] of a comment "sample_rate: 51.2 kHz" on the file's present line; nothing for any
-/// other comment. Throws InvalidInput, with the line, for what is no rate.
-std::optional<double> rate_in_comment(std::string_view text, const CsvFile& file);
+/// What a number called so is taken for, its name in small letters with _ between words.
+bool is_name_of_rate(std::string_view name);
 
 // Is a column of sampling instants uniform?
 
@@ -166,10 +166,38 @@ struct TimeAxis {
   std::vector<TimeFinding> findings;
 };
 
+/// Why a rate is not known.
+std::string too_coarse_text(std::string_view what, double resolution);
+
+/// A rate whose period is known to a relative `resolution`: the whole number of hertz within it,
+/// where there is one.
+double rate_of_period(double period, double resolution);
+
+/// A rate [Hz], why it may be another one or is not known (NaN), and by how much, relative, the
+/// digits that were printed leave it open.
+struct PrintedRate {
+  double hertz = std::numeric_limits<double>::quiet_NaN();
+  std::string doubt = {};
+  double rounding = 0.0;
+};
+
+/// The rate of a period as it was printed, `value` units of time. One with too few digits for 0.05
+/// % of the rate tells it where one over it is a whole number of hertz: without a doubt where that
+/// is 1, 2 or 5 times a power of ten and the digits hold no other rate that recorders have.
+/// Otherwise it is not known.
+PrintedRate rate_of_printed_period(std::string_view number, double value, std::string_view what,
+                                   std::string_view unit = "s");
+
+/// The rate of a comment "sample_rate: 51.2 kHz", "fs [Hz] = 51200" or "dt: 1 ms" on the file's
+/// present line; nothing for any other comment, and one with two units. Throws InvalidInput, with
+/// the line, for a sample_rate that is none.
+std::optional<PrintedRate> rate_in_comment(std::string_view text, const CsvFile& file);
+
 /// Compares instants t_i [s], printed to `resolution` [s], with the uniform grid t_0 + i Δt,
 /// Δt = (t_{n−1} − t_0)/(n − 1). A step over 1.5 median steps is a gap; a deviation over
-/// 0.01 Δt + resolution (printing moves each instant by half its resolution) is jitter. A rate
-/// that lies within the printed resolution of a whole number of hertz is that number.
+/// 0.01 Δt + resolution (printing moves each instant by half its resolution) is jitter. The rate is
+/// one over the printed step where all instants are multiples of it, 0.003, 0.006, 0.009; else the
+/// whole number of hertz that explains them all within their printed resolution, where one does.
 TimeAxis examine_time_axis(std::span<const double> t, double resolution);
 
 }  // namespace modcal

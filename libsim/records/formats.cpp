@@ -19,10 +19,14 @@ namespace {
 using Path = std::filesystem::path;
 
 // Of formats that hold arrays by names.
-template <auto kWrite, typename What>
-void write_as_arrays(const Path& path, std::span<const What> what, const std::string& provenance) {
-  kWrite(path, written_arrays(what, provenance, path.string()));
+template <auto kWrite, typename What, typename Notes>
+void write_as_arrays(const Path& path, std::span<const What> what, const Notes& notes) {
+  kWrite(path, written_arrays(what, notes, path.string()));
 }
+template <auto kWrite>
+constexpr auto write_signals = write_as_arrays<kWrite, Signal, RecordNotes>;
+template <auto kWrite>
+constexpr auto write_function_arrays = write_as_arrays<kWrite, FileFunction, std::string>;
 
 const std::vector<RecordFormat>& table() {
   static const std::vector<RecordFormat> formats = {
@@ -30,8 +34,8 @@ const std::vector<RecordFormat>& table() {
        "columns of text",
        {".csv", ".tsv", ".txt"},
        read_csv,
-       [](const Path& path, std::span<const Signal> signals, const std::string& provenance) {
-         write_csv(path, signals, {.provenance = {provenance}});
+       [](const Path& path, std::span<const Signal> signals, const RecordNotes& notes) {
+         write_csv(path, signals, {.provenance = {notes.provenance}, .start = notes.start});
        },
        csv_functions,
        write_csv_functions},
@@ -39,9 +43,13 @@ const std::vector<RecordFormat>& table() {
        "WAV and other sound files",
        {".wav", ".wave", ".rf64", ".bwf", ".w64"},
        read_wav,
-       [](const Path& path, std::span<const Signal> signals, const std::string& provenance) {
-         write_wav(path, signals, {.samples = WavSamples::kDouble, .provenance = provenance});
-       }},
+       [](const Path& path, std::span<const Signal> signals, const RecordNotes& notes) {
+         write_wav(path, signals, {.samples = WavSamples::kDouble, .provenance = notes.provenance});
+       },
+       nullptr,
+       nullptr,
+       false,
+       true},
       {"uff",
        "universal files, datasets 58 and 58b",
        {".uff", ".unv", ".uf58"},
@@ -54,24 +62,24 @@ const std::vector<RecordFormat>& table() {
        "MAT files of MATLAB and Octave",
        {".mat"},
        read_matlab,
-       write_as_arrays<write_matlab, Signal>,
+       write_signals<write_matlab>,
        matlab_functions,
-       write_as_arrays<write_matlab, FileFunction>},
+       write_function_arrays<write_matlab>},
       {"npy", "an array of NumPy", {".npy"}, read_npy, write_npy, npy_functions},
       {"npz",
        "archives of NumPy",
        {".npz"},
        read_npz,
-       write_as_arrays<write_npz, Signal>,
+       write_signals<write_npz>,
        npz_functions,
-       write_as_arrays<write_npz, FileFunction>},
+       write_function_arrays<write_npz>},
       {"hdf5",
        "HDF5 files",
        {".h5", ".hdf5", ".hdf"},
        read_hdf5,
-       write_as_arrays<write_hdf5, Signal>,
+       write_signals<write_hdf5>,
        hdf5_functions,
-       write_as_arrays<write_hdf5, FileFunction>},
+       write_function_arrays<write_hdf5>},
       {"lvm", "LabVIEW measurement files", {".lvm"}, read_lvm, write_lvm},
   };
   return formats;

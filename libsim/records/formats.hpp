@@ -15,7 +15,7 @@ struct RecordFormat {
   Recording (*read)(const std::filesystem::path& path, const ReadOptions& options);
   /// Keeps every bit of the samples; nothing: the format is only read.
   void (*write)(const std::filesystem::path& path, std::span<const Signal> signals,
-                const std::string& provenance) = nullptr;
+                const RecordNotes& notes) = nullptr;
   /// What stands in a file that may be a function of frequency, headers and lines; null: the format
   /// keeps none.
   std::vector<StoredChannel> (*functions)(const std::filesystem::path& path) = nullptr;
@@ -25,6 +25,8 @@ struct RecordFormat {
                           const std::string& provenance) = nullptr;
   /// Of functions: power spectra, too, and each may have lines of its own.
   bool keeps_any_function = false;
+  /// Has no place for the instant of the first sample.
+  bool begins_at_zero = false;
 };
 
 /// Those this program was built with.

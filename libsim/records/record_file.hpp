@@ -34,18 +34,26 @@ struct ReadOptions {
 /// instants. Throws InvalidInput with file:line:column, value and remedy.
 Recording read_csv(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// What a file says beside the samples that are written.
+struct RecordNotes {
+  std::string provenance = {};
+  double start = 0.0;  ///< of the first sample [s]
+};
+
 struct CsvWriteOptions {
-  /// A first column t [s] = i/f_s.
+  /// A first column t [s] = start + i/f_s.
   bool time_column = true;
   /// Where the samples come from; each line becomes a comment.
   std::vector<std::string> provenance = {};
+  double start = 0.0;  ///< of the first sample [s]
 };
 
 /// Writes signals of one rate and length: the headings `quantity [unit]`, comments with the sample
 /// rate and the provenance, one row per sample. Numbers are the shortest decimals that read back
 /// to the same double, so read_csv returns the same bits. An existing file is replaced only when
 /// the new one is complete. Throws InvalidInput for no signals, different rates or lengths, equal
-/// names, samples that are not finite, and where the file cannot be written.
+/// names, headings that would be read as instants or as other ones, samples that are not finite,
+/// and where the file cannot be written.
 void write_csv(const std::filesystem::path& path, std::span<const Signal> signals,
                const CsvWriteOptions& options = {});
 

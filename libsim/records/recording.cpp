@@ -36,6 +36,16 @@ void Recording::contradict(std::string text) {
   warnings.push_back(std::move(text));
 }
 
+void Recording::tell_of_instants(std::string text, bool breaks, bool is_rate_stated) {
+  if (!is_rate_stated) {
+    add_problem(std::move(text));
+  } else if (breaks) {
+    contradict(std::move(text));
+  } else {
+    warnings.push_back(std::move(text));
+  }
+}
+
 void Recording::compare_rate(double stated, double rounding, std::string_view file) {
   const double difference = std::abs(sample_rate / stated - 1.0);
   if (difference > rounding) {

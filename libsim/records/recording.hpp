@@ -38,6 +38,7 @@ struct Recording {
   std::string format;  ///< for people: "CSV, separated by ','", "WAV, 24 bit integers"
   double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz], NaN: not known
   std::string rate_source;                                        ///< where the rate was found
+  double start = 0.0;                                             ///< of the first sample [s]
   double time_jitter = std::numeric_limits<double>::quiet_NaN();  ///< largest deviation [s]
   std::vector<RecordedChannel> channels;
   /// What a strict reading refuses, with file, line and column; the first kMaxProblems of them.
@@ -61,6 +62,9 @@ struct Recording {
   void check_finite(std::string_view file);
   /// A warning that is a contradiction.
   void contradict(std::string text);
+  /// What is wrong with instants: a problem, unless the rate is stated; then a contradiction where
+  /// some are missing (`breaks`), else a warning.
+  void tell_of_instants(std::string text, bool breaks, bool is_rate_stated);
   /// Takes the rate stated by the user in the place of that of the file (NaN: it tells none). More
   /// than `rounding` (relative) between them is a warning, more than 0.05 %, which no calibration
   /// of a clock corrects, a contradiction.

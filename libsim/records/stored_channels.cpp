@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
@@ -12,11 +13,53 @@
 namespace modcal {
 namespace {
 
-bool same_grid(const StoredChannel& a, const StoredChannel& b) {
+double period_of(const StoredChannel& channel) {
+  return std::isnan(channel.sample_rate) ? channel.period : 1.0 / channel.sample_rate;
+}
+
+// Beginnings are compared by the sampling period; where nobody tells it they must be equal.
+bool same_grid(const StoredChannel& a, const StoredChannel& b, const ReadOptions& options) {
+  const double known = period_of(a);
+  const double period = std::isnan(known) ? 1.0 / options.sample_rate : known;
+  const bool are_unknown = std::isnan(a.sample_rate) && std::isnan(b.sample_rate);
+  // Over all samples, as instants tell it.
+  const double drift = std::abs(period_of(b) - known) * static_cast<double>(a.size);
   const bool same_rate =
-      a.sample_rate == b.sample_rate || (std::isnan(a.sample_rate) && std::isnan(b.sample_rate));
-  const bool is_later = std::abs(a.start - b.start) * a.sample_rate > kSameInstant;
+      a.sample_rate == b.sample_rate || (are_unknown && !(drift > kSameInstant * known));
+  const double same = std::isnan(period) ? 0.0 : kSameInstant * period;
+  const bool is_later = std::abs(a.start - b.start) > same;
   return same_rate && a.size == b.size && !is_later;
+}
+
+// Where channels have instants of their own, these tell when each begins.
+void find_beginnings(std::vector<StoredChannel>& stored, const ReadOptions& options) {
+  struct Begin {
+    double start = std::numeric_limits<double>::quiet_NaN();
+    double period = std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto is_open = [](const StoredChannel& channel) {
+    return channel.read_times && std::isnan(channel.start);
+  };
+  std::map<std::string, Begin> known;
+  for (const StoredChannel& channel : stored) {
+    if (is_open(channel)) known[channel.times_name] = {};
+  }
+  if (known.size() < 2 || options.headers_only) return;
+  known.clear();
+  for (StoredChannel& channel : stored) {
+    if (!is_open(channel)) continue;
+    const auto [place, is_new] = known.try_emplace(channel.times_name);
+    if (is_new) {
+      options.stop.throw_if_requested();
+      const std::vector<double> times = channel.read_times();
+      if (times.size() > 1) {
+        place->second = {times.front(),
+                         (times.back() - times.front()) / static_cast<double>(times.size() - 1)};
+      }
+    }
+    channel.start = place->second.start;
+    channel.period = place->second.period;
+  }
 }
 
 // What is asked for, or all that can stand in one record with the first channel in time.
@@ -26,7 +69,7 @@ std::vector<std::size_t> choose(const std::vector<StoredChannel>& stored,
   std::vector<std::size_t> chosen = find_channels(names, options.channels, file);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const StoredChannel& channel = stored[chosen[i]];
-    if (channel.other_than_time.empty() && same_grid(channel, stored[chosen[0]])) continue;
+    if (channel.other_than_time.empty() && same_grid(channel, stored[chosen[0]], options)) continue;
     throw WrongChannel(
         i, channel.other_than_time.empty()
                ? fmt::format("{}: channel \"{}\" has {}, \"{}\" has {}; one record needs one rate, "
@@ -39,7 +82,7 @@ std::vector<std::size_t> choose(const std::vector<StoredChannel>& stored,
   if (!options.channels.empty()) return chosen;
   for (std::size_t i = 0; i < stored.size(); ++i) {
     const bool fits = stored[i].other_than_time.empty() &&
-                      (chosen.empty() || same_grid(stored[i], stored[chosen[0]]));
+                      (chosen.empty() || same_grid(stored[i], stored[chosen[0]], options));
     if (fits) {
       chosen.push_back(i);
     } else {
@@ -56,9 +99,10 @@ void use_times(const StoredChannel& channel, const ReadOptions& options, const s
   const auto finite = [](double value) { return std::isfinite(value); };
   MODCAL_REQUIRE(std::all_of(times.begin(), times.end(), finite),
                  "{}: an instant of \"{}\" is no number", file, channel.head.name);
-  const TimeAxis axis =
-      examine_time_axis(times, channel.time_resolution * largest_magnitude(times));
+  const double resolution = channel.time_resolution * largest_magnitude(times);
+  const TimeAxis axis = examine_time_axis(times, resolution);
   recording.time_jitter = axis.jitter;
+  if (std::isnan(channel.start) && !times.empty()) recording.start = times.front();
   if (!channel.is_rate_stated) {
     recording.sample_rate = axis.sample_rate;
   } else if (axis.findings.empty() && std::isnan(options.sample_rate) &&
@@ -69,15 +113,14 @@ void use_times(const StoredChannel& channel, const ReadOptions& options, const s
         "sample_rate",
         file, channel.rate_source, channel.sample_rate, channel.head.name, axis.sample_rate));
   }
+  if (axis.coarse && !channel.is_rate_stated && std::isnan(options.sample_rate)) {
+    recording.add_problem(fmt::format(
+        "{}: {}", file,
+        too_coarse_text(fmt::format("the time of \"{}\"", channel.head.name), resolution)));
+  }
   for (const TimeFinding& finding : axis.findings) {
     std::string text = fmt::format("{}: sample {}: {}", file, finding.sample, finding.text);
-    if (std::isnan(options.sample_rate)) {
-      recording.add_problem(std::move(text));
-    } else if (finding.breaks) {
-      recording.contradict(std::move(text));
-    } else {
-      recording.warnings.push_back(std::move(text));
-    }
+    recording.tell_of_instants(std::move(text), finding.breaks, !std::isnan(options.sample_rate));
   }
 }
 
@@ -88,16 +131,28 @@ void settle_rate(const StoredChannel& channel, const ReadOptions& options, const
                  "sample_rate = {} Hz cannot be used: it must be > 0", options.sample_rate);
   recording.sample_rate = channel.sample_rate;
   recording.rate_source = channel.rate_source;
-  if (channel.read_times && !options.headers_only) use_times(channel, options, file, recording);
+  if (std::isfinite(channel.start)) recording.start = channel.start;
+  const bool has_times = channel.read_times && !options.headers_only;
+  if (has_times) use_times(channel, options, file, recording);
+  if (std::abs(recording.start) > kLatestStart) recording.start = 0.0;
   if (!channel.contradiction.empty() && !given) {
     recording.add_problem(fmt::format("{}: {}; correct one of them or state sample_rate", file,
                                       channel.contradiction));
   }
   if (given) {
-    recording.compare_rate(options.sample_rate, 0.0, file);
+    const double rounding = has_times ? 0.0 : channel.rate_rounding;
+    if (rounding > 0.0 && std::isnan(recording.sample_rate)) {
+      recording.sample_rate = 1.0 / channel.period;
+    }
+    recording.compare_rate(options.sample_rate, rounding, file);
   } else if (!std::isfinite(recording.sample_rate) && !options.headers_only &&
              recording.problem_count == 0) {
-    recording.add_problem(fmt::format("{}: the sample rate is not known; state sample_rate", file));
+    recording.add_problem(fmt::format("{}: {}", file,
+                                      channel.rate_doubt.empty()
+                                          ? "the sample rate is not known; state sample_rate"
+                                          : channel.rate_doubt));
+  } else if (!channel.rate_doubt.empty() && !has_times) {
+    recording.warnings.push_back(fmt::format("{}: {}", file, channel.rate_doubt));
   }
 }
 
@@ -105,9 +160,9 @@ void settle_rate(const StoredChannel& channel, const ReadOptions& options, const
 
 std::string grid_text(const StoredChannel& channel) {
   if (!channel.other_than_time.empty()) return channel.other_than_time;
-  const std::string rate = std::isnan(channel.sample_rate)
-                               ? std::string("a rate that is not stated")
-                               : fmt::format("{:.9g} Hz", channel.sample_rate);
+  const double period = period_of(channel);
+  const std::string rate = std::isnan(period) ? std::string("a rate that is not stated")
+                                              : fmt::format("{:.9g} Hz", 1.0 / period);
   const bool begins_later = std::abs(channel.start) > 0.0;
   return fmt::format("{} samples at {}{}", channel.size, rate,
                      begins_later ? fmt::format(" from {:.9g} s on", channel.start) : "");
@@ -127,22 +182,16 @@ std::vector<std::string> different_names(const std::vector<StoredChannel>& store
   return names;
 }
 
-double rate_of_period(double period, double resolution) {
-  const double rate = 1.0 / period;
-  const double whole = std::round(rate);
-  // Of a period that ends in a 5 behind the last digit printed rounding is all of the resolution.
-  const bool is_whole = whole > 0.0 && std::abs(rate - whole) <= 1.0001 * resolution * whole;
-  return is_whole ? whole : rate;
-}
-
 Recording assemble(std::string format, std::vector<StoredChannel> stored,
                    const ReadOptions& options, const std::string& file) {
   const std::vector<std::string> names = different_names(stored);
+  find_beginnings(stored, options);
   Recording recording;
   recording.format = std::move(format);
   const std::vector<std::size_t> chosen = choose(stored, names, options, file, recording);
   if (chosen.empty()) {
-    recording.add_problem(fmt::format("{}: no channel of it is a record in time", file));
+    recording.add_problem(fmt::format("{}: no channel of it is a record in time: \"{}\" is a {}",
+                                      file, names.front(), grid_text(stored.front())));
   } else {
     settle_rate(stored[chosen[0]], options, file, recording);
     recording.stated_frames = stored[chosen[0]].size;

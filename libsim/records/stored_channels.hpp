@@ -16,9 +16,13 @@ struct StoredChannel {
   std::size_t size = 0;
   double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: not known
   std::string rate_source;
+  std::string rate_doubt = {};     ///< why it may be another one, or is not known; empty: no doubt
+  double rate_rounding = 0.0;      ///< of the rate, relative, by the digits it was printed with
   bool is_rate_stated = false;     ///< beside the instants, which must agree with it
   std::string contradiction = {};  ///< what else in the file tells another rate; empty: nothing
   double start = std::numeric_limits<double>::quiet_NaN();  ///< of the first sample [s]; NaN: none
+  /// About one over the rate [s], where the rate is not known yet; NaN: nor is this.
+  double period = std::numeric_limits<double>::quiet_NaN();
   /// What it is where it is no function of time ("frequency response, 801 lines"); else empty.
   std::string other_than_time = {};
   std::string place = {};  ///< "data.uff: dataset 58 at line 12"
@@ -27,6 +31,7 @@ struct StoredChannel {
   /// Reads the instants [s] where the file states them one by one; else empty. Then they tell the
   /// sample rate.
   std::function<std::vector<double>()> read_times = {};
+  std::string times_name = {};   ///< the same for all channels that have the same instants
   double time_resolution = 0.0;  ///< of the largest instant as it was stored, relative
   /// Of a function of frequency: what it is, its lines where they are even and the first one lies a
   /// whole number of steps from 0, its lines one by one [Hz], the unit of its force, and its
@@ -69,9 +74,4 @@ ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
 
 /// All functions of frequency, as read_functions() says.
 FileFunctions assemble_functions(const std::vector<StoredChannel>& stored, const std::string& file);
-
-/// A rate whose period was printed to a relative `resolution`: the whole number of hertz within it,
-/// where there is one.
-double rate_of_period(double period, double resolution);
-
 }  // namespace modcal

@@ -55,12 +55,28 @@ constexpr double kCalibratedClock = 5e-4;
 /// Halved: six digits of a period just hold it.
 constexpr double kSameRate = 1e-5;
 
+/// Whole numbers of hertz about the mean rate that are tried for one on whose grid all printed
+/// instants lie. Source: 3352 columns of 3 to 1000 instants of 1 kHz to 1 MHz, printed to a quarter
+/// of a step or better; 87 % have the nearest one, all have one. Without it the mean is taken.
+/// Range tried: 1 to 800.
+/// Doubled: 6 of them have the mean in the place of 20.
+/// Halved: 58 have the mean.
+constexpr int kMostRatesTried = 64;
+
 /// By how much of a sample channels of one record may begin apart.
 /// Source: instants since 1904 hold 5e-7 s, .03 samples at 51.2 kHz.
 /// Range tried: this.
 /// Doubled: turns a response by 18 degrees at half the rate.
 /// Halved: such instants would be refused.
 constexpr double kSameInstant = 0.05;
+
+/// Instant of a first sample [s] beyond which it counts from the epoch of a calendar, not from the
+/// beginning of the record.
+/// Source: twelve days; seconds since 1970 or 1904 are above 10^9.
+/// Range tried: this.
+/// Doubled: the same for all dates since 1970.
+/// Halved: the same.
+constexpr double kLatestStart = 1e6;
 
 /// Samples before a run of equal ones at the end in which a string that rings out is within the
 /// last two steps of the resolution. Source: 43 decays of sines (65 to 659 Hz, 8 to 16 bits, 0.02

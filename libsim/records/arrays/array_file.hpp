@@ -20,10 +20,12 @@ struct NamedArray {
   std::vector<std::string> path;
   std::vector<std::size_t> dims;
   Holds holds = Holds::kOther;
-  bool is_single = false;  ///< floats of 32 bits
-  std::string title = {};  ///< in the place of the names, where the file has one
-  std::string unit = {};   ///< where the file states one with it
-  std::size_t place = 0;   ///< for the file alone
+  bool is_single = false;   ///< floats of 32 bits
+  bool is_integer = false;  ///< stored as whole numbers
+  std::string title = {};   ///< in the place of the names, where the file has one
+  std::string unit = {};    ///< where the file states one with it
+  bool is_note = false;     ///< tells of another array: no channel
+  std::size_t place = 0;    ///< for the file alone
 
   bool has_numbers() const { return holds == Holds::kReal || holds == Holds::kComplex; }
   bool is_real() const { return holds == Holds::kReal; }
@@ -51,30 +53,38 @@ class ArrayFile {
   // Throw InvalidInput where the array is not what its header says.
   /// The j-th channel of a table; of a complex one real and imaginary part of each value in turn.
   virtual std::vector<double> column(const NamedArray& array, std::size_t j) = 0;
-  /// Of an array of texts the first one.
-  virtual std::string text(const NamedArray& array) = 0;
-  /// Its one real value, read once: a rate is that of every channel.
+  virtual std::vector<std::string> texts(const NamedArray& array) = 0;
+  /// The first of its texts.
+  std::string text(const NamedArray& array) {
+    const std::vector<std::string> all = texts(array);
+    return all.empty() ? std::string() : all.front();
+  }
+  /// Its one real value, or that of its text (NaN: it is none), read once: a rate is that of every
+  /// channel.
   double number(const NamedArray& array) {
     const std::lock_guard lock(mutex_);
     const auto known = numbers_.find(array.place);
     if (known != numbers_.end()) return known->second;
-    return numbers_[array.place] = column(array, 0)[0];
+    return numbers_[array.place] = array.is_real() ? column(array, 0)[0] : number_of_text(array);
   }
 
  protected:
   std::vector<NamedArray> arrays_;
 
  private:
+  double number_of_text(const NamedArray& array);
+
   std::mutex mutex_;
   std::map<std::size_t, double> numbers_;  // by place
 };
 
 /// The vectors and the columns of tables as channels. The sample rate [Hz] is a number called
 /// sample_rate, fs or the like, or one over a number called dt or increment [s], in the same
-/// structure or around it, unless a vector called t or time [s] stands nearer; both must agree. A
-/// text `unit` below the name of an array is its unit, of rate and time, too; numbers scale_factor
-/// and add_offset there are applied. `kind` of file: "MAT file". Throws InvalidInput for a file
-/// without vectors, and as assemble() does.
+/// structure or around it, unless a vector called t or time [s] stands nearer; all must agree. The
+/// first instant, a number t0 or start_time, or X0 beside the period tells where a channel begins.
+/// Units, of rate and time, too, are those of unit_of(); scale_factor and add_offset are applied,
+/// and a channel for which they cannot be told is left out. `kind` of file: "MAT file". Throws
+/// InvalidInput for a file without vectors, and as assemble() does.
 Recording recording_of(const std::shared_ptr<ArrayFile>& content, std::string_view kind,
                        const std::filesystem::path& path, const ReadOptions& options);
 

@@ -6,16 +6,18 @@
 namespace modcal {
 
 bool WrittenArrays::is_for_axis(const std::string& name) const {
-  return name == axis || (has_lines() ? is_name_of_lines(name) : is_name_of_time(name));
+  return name == axis || (has_start() && name == kStart) ||
+         (has_lines() ? is_name_of_lines(name) : is_name_of_time(name));
 }
 
-WrittenArrays written_arrays(std::span<const Signal> signals, const std::string& provenance,
+WrittenArrays written_arrays(std::span<const Signal> signals, const RecordNotes& notes,
                              const std::string& file) {
   require_one_record(signals, file);
   WrittenArrays result{.axis = "sample_rate",
                        .axis_values = {&signals.front().sample_rate, 1},
                        .arrays = {},
-                       .provenance = provenance,
+                       .provenance = notes.provenance,
+                       .start = notes.start,
                        .kept = {}};
   for (const Signal& signal : signals) {
     result.arrays.push_back(

@@ -16,6 +16,9 @@ namespace modcal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kUnknownRate =
+    "the sample rate is not known; state sample_rate, add a comment line \"# sample_rate: 51200 "
+    "Hz\", or a column t [s] with two instants or more";
 constexpr std::uint64_t kHeadBytes = 1 << 20, kWholeFile = ~std::uint64_t{0};
 
 class CsvReader final : public CsvHandler {
@@ -32,6 +35,7 @@ class CsvReader final : public CsvHandler {
     if (std::string text = mark_.doubt(); !text.empty() && !options_.headers_only) {
       record_.add_problem(fmt::format("{}: {}", file_.name(), text));
     }
+    leave_index_out();
     settle_sample_rate();
     record_.format = "CSV, separated by " + file_.separator_name();
     for (const std::size_t index : kept_) {
@@ -56,6 +60,7 @@ class CsvReader final : public CsvHandler {
   void forget_samples();
   void settle_columns();
   void choose_columns();
+  void leave_index_out();
   void settle_sample_rate();
   double to_seconds(Column& column) const;
   void use_time_axis(double stated);
@@ -66,14 +71,15 @@ class CsvReader final : public CsvHandler {
   const ReadOptions& options_;
   Recording record_;
   std::vector<std::string> headings_, first_row_;
+  std::string unnamed_;  // where a first column without a name is
   std::vector<Column> columns_;
   std::vector<std::size_t> kept_;
   TimeColumns instants_;
   DecimalMark mark_;
   std::optional<std::size_t> time_;
   bool in_first_row_ = true;
-  std::size_t rows_ = 0, commented_rate_line_ = 0;
-  double commented_rate_ = kNaN;
+  std::size_t rows_ = 0;
+  CommentedRate commented_;
 };
 
 // Their number follows from the size of the file where it was not read to its end.
@@ -91,13 +97,7 @@ void CsvReader::comment(std::string_view text) {
     std::string hidden = hidden_row_text(file_, text, columns_.size());
     if (!hidden.empty()) record_.add_problem(std::move(hidden));
   }
-  const std::optional<double> rate = rate_in_comment(text, file_);
-  if (!rate) return;
-  MODCAL_REQUIRE(!(std::abs(*rate - commented_rate_) > 0.0),
-                 "{}:{}: the comment says {:.9g} Hz, that on line {} {:.9g} Hz; delete one of them",
-                 file_.name(), file_.line(), *rate, commented_rate_line_, commented_rate_);
-  commented_rate_ = *rate;
-  commented_rate_line_ = file_.line();
+  commented_.read(text, file_);
 }
 
 void CsvReader::field(std::size_t index, std::string_view text) {
@@ -108,7 +108,8 @@ void CsvReader::field(std::size_t index, std::string_view text) {
   if (in_first_row_) return first_row_.push_back(utf8_or_latin1(text));
   if (index >= columns_.size() || !columns_[index].read) return;
   const ParsedNumber number = mark_.parse(text, file_.separator());
-  if (number.kind != NumberKind::kNumber) {
+  const bool is_named = !columns_[index].channel.name.empty();
+  if (number.kind != NumberKind::kNumber && is_named) {
     record_.add_problem(fmt::format("{}: sample {} of {}: {}", file_.place(index), rows_,
                                     columns_[index].channel.name,
                                     describe_bad_number(number.kind, text)));
@@ -152,24 +153,13 @@ void CsvReader::settle_first_row() {
 }
 
 void CsvReader::settle_columns() {
-  MODCAL_REQUIRE(!are_numbers(headings_, file_.separator()),
-                 "{}: the first row holds numbers; put a row of names before it, such as "
-                 "t [s],R1 [N] (with numpy.savetxt: comments=\"\")",
-                 file_.place(0));
-  columns_.resize(headings_.size());
-  std::vector<ColumnHeading> headings;
-  for (std::size_t i = 0; i < headings_.size(); ++i) {
-    const ColumnHeading& heading = headings.emplace_back(parse_column_heading(headings_[i]));
-    MODCAL_REQUIRE(!heading.name.empty(), "{}: column {} has no name; name every column",
-                   file_.place(i), i + 1);
-    for (std::size_t j = 0; j < i; ++j) {
-      MODCAL_REQUIRE(columns_[j].channel.name != heading.name,
-                     "{}: columns {} and {} are both named \"{}\"; give them different names",
-                     file_.place(i), j + 1, i + 1, heading.name);
-    }
-    columns_[i].channel.name = heading.name;
-    columns_[i].channel.unit = heading.unit;
+  const std::vector<ColumnHeading> headings = headings_of_row(headings_, file_);
+  columns_.resize(headings.size());
+  for (std::size_t i = 0; i < headings.size(); ++i) {
+    columns_[i].channel.name = headings[i].name;
+    columns_[i].channel.unit = headings[i].unit;
   }
+  if (headings[0].name.empty()) unnamed_ = file_.place(0);
   if (options_.has_time) instants_ = TimeColumns(headings);
   choose_columns();
 }
@@ -180,33 +170,48 @@ void CsvReader::choose_columns() {
   require_apart(headings_, options_.channels, file_.place(0));
   kept_ = find_channels(names, options_.channels, fmt::format("{}:{}", file_.name(), file_.line()));
   for (std::size_t i = 0; options_.channels.empty() && i < columns_.size(); ++i) {
-    if (!instants_.contains(i)) kept_.push_back(i);
+    if (!instants_.contains(i) && !names[i].empty()) kept_.push_back(i);
   }
+  columns_[0].read = names[0].empty();
   MODCAL_REQUIRE(!kept_.empty(), "{}: there is a time column but no channel", file_.place(0));
   time_ = instants_.instants_of(kept_.front());
   for (const std::size_t index : kept_) {
     MODCAL_REQUIRE(!instants_.contains(index),
                    "{}: column \"{}\" is the time column, not a channel", file_.place(index),
                    names[index]);
+    MODCAL_REQUIRE(!names[index].empty(), "{}", unnamed_text(file_.place(index), index + 1));
     columns_[index].read = true;
     if (time_) columns_[*instants_.instants_of(index)].read = true;
   }
 }
 
+// What numbers the rows, as pandas writes it, or has their instants once more.
+void CsvReader::leave_index_out() {
+  if (unnamed_.empty()) return;
+  const std::vector<double>& index = columns_[0].channel.samples;
+  if (numbers_rows(index) || (time_ && index == columns_[*time_].channel.samples)) {
+    record_.warnings.push_back(
+        fmt::format("{}: column 1 has no name and numbers the rows: it is left out", unnamed_));
+  } else {
+    record_.add_problem(unnamed_text(unnamed_, 1));
+  }
+}
+
 void CsvReader::settle_sample_rate() {
   const bool given = std::isfinite(options_.sample_rate);
-  record_.sample_rate = commented_rate_;
+  const PrintedRate& told = commented_.rate;
+  record_.sample_rate = told.hertz;
   if (given) {
-    record_.compare_rate(options_.sample_rate, 0.0, file_.name());
-  } else if (std::isfinite(commented_rate_)) {
-    record_.rate_source = fmt::format("comment on line {}", commented_rate_line_);
+    record_.compare_rate(options_.sample_rate, told.rounding, file_.name());
+  } else if (commented_.is_known()) {
+    record_.rate_source = fmt::format("comment on line {}", commented_.line);
   }
   if (time_) use_time_axis(record_.sample_rate);
   if (!std::isfinite(record_.sample_rate) && record_.problem_count == 0) {
-    record_.add_problem(
-        fmt::format("{}: the sample rate is not known; state sample_rate, add a comment line "
-                    "\"# sample_rate: 51200 Hz\", or a column t [s] with two instants or more",
-                    file_.name()));
+    record_.add_problem(fmt::format("{}: {}", file_.name(),
+                                    told.doubt.empty() ? kUnknownRate : told.doubt.c_str()));
+  } else if (!time_ && !given && !told.doubt.empty()) {
+    record_.warnings.push_back(fmt::format("{}: {}", file_.name(), told.doubt));
   }
 }
 
@@ -250,26 +255,19 @@ void CsvReader::use_time_axis(double stated) {
   const double resolution = to_seconds(column);
   const TimeAxis axis = examine_time_axis(t, resolution);
   record_.time_jitter = axis.jitter;
+  record_.start = t.front();
   if (std::isfinite(axis.sample_rate)) compare_instants(1.0 / axis.sample_rate);
   const double rounding = std::min(axis.rate_error, kCalibratedClock);
   const bool given = std::isfinite(options_.sample_rate);
   if (axis.coarse && !std::isfinite(stated)) {
-    record_.add_problem(fmt::format(
-        "{}: column {} is printed to {:.3g} s, too coarsely to tell the sample rate; print it with "
-        "more digits or state sample_rate",
-        file_.name(), column.channel.name, resolution));
+    record_.add_problem(fmt::format("{}: {}", file_.name(),
+                                    too_coarse_text("column " + column.channel.name, resolution)));
   }
   for (const TimeFinding& finding : axis.findings) {
     std::string text =
         fmt::format("{}:{}: sample {}: {}", file_.name(), record_.lines.line(finding.sample),
                     finding.sample, finding.text);
-    if (!given) {
-      record_.add_problem(std::move(text));
-    } else if (finding.breaks) {
-      record_.contradict(std::move(text));
-    } else {
-      record_.warnings.push_back(std::move(text));
-    }
+    record_.tell_of_instants(std::move(text), finding.breaks, given);
   }
   if (given) {
     record_.sample_rate = axis.sample_rate;
@@ -277,11 +275,15 @@ void CsvReader::use_time_axis(double stated) {
   } else if (!std::isfinite(stated)) {
     record_.sample_rate = axis.sample_rate;
     record_.rate_source = fmt::format("column {}", column.channel.name);
-  } else if (axis.findings.empty() && std::abs(axis.sample_rate / stated - 1.0) > rounding) {
+  } else if (axis.findings.empty() &&
+             std::abs(axis.sample_rate / stated - 1.0) > rounding + commented_.rate.rounding) {
     record_.add_problem(fmt::format(
         "{}:{}: the comment says {:.9g} Hz, column {} says {:.9g} Hz; correct one of them or state "
         "sample_rate",
-        file_.name(), commented_rate_line_, stated, column.channel.name, axis.sample_rate));
+        file_.name(), commented_.line, stated, column.channel.name, axis.sample_rate));
+  } else if (commented_.rate.rounding > rounding && std::isfinite(axis.sample_rate)) {
+    record_.sample_rate = axis.sample_rate;
+    record_.rate_source = fmt::format("column {}", column.channel.name);
   }
 }
 

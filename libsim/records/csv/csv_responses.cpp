@@ -40,6 +40,11 @@ double radians(const std::string& unit) {
   return is_degree ? std::numbers::pi / 180.0 : std::numeric_limits<double>::quiet_NaN();
 }
 
+void require_no_level(const std::string& name, const std::string& unit, const std::string& file) {
+  MODCAL_REQUIRE(unit.find("dB") == std::string::npos,
+                 "{}: {} is in \"{}\"; write magnitudes, not levels", file, name, unit);
+}
+
 using Lines = std::shared_ptr<const std::vector<double>>;
 
 StoredChannel function_of(const Recording& columns, const RecordedChannel& column,
@@ -59,8 +64,7 @@ StoredChannel function_of(const Recording& columns, const RecordedChannel& colum
                  "{}: {} has an imaginary part and a phase; leave one column out", file, name);
   MODCAL_REQUIRE(imaginary != nullptr || name == column.name,
                  "{}: {} has a real part and no column \"{} imaginary\"", file, name, name);
-  MODCAL_REQUIRE(column.unit.find("dB") == std::string::npos,
-                 "{}: {} is in \"{}\"; write magnitudes, not levels", file, name, column.unit);
+  require_no_level(name, column.unit, file);
   MODCAL_REQUIRE(imaginary == nullptr || imaginary->unit.empty() || imaginary->unit == column.unit,
                  "{}: {} is in \"{}\", its imaginary part in \"{}\"", file, name, column.unit,
                  imaginary->unit);
@@ -90,6 +94,7 @@ void require_plain_column(const std::string& name, const std::string& unit,
                  "heading; use a name without brackets that is no frequency and no part of a "
                  "function, or write another format",
                  file, name, unit);
+  require_no_level(name, unit, file);
 }
 
 }  // namespace

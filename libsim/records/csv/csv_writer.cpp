@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kBlock = 1 << 16;
 
 std::string escaped(const std::string& text) {
-  if (text.find_first_of(",;\t\"\n\r#") == std::string::npos) return text;
+  if (text.find_first_of(",;\t\"\n\r#%") == std::string::npos) return text;
   std::string result(2 * text.size() + 2, '\0');
   result.resize(csv_write(result.data(), result.size(), text.data(), text.size()));
   return result;
@@ -35,13 +35,26 @@ void append_comment(fmt::memory_buffer& out, const std::string& text) {
 
 void require_plain_headings(std::span<const Signal> signals, const std::string& file) {
   for (const Signal& signal : signals) {
-    const ColumnHeading read = parse_heading(heading_text(signal.quantity, signal.unit));
+    const ColumnHeading read = parse_column_heading(heading_text(signal.quantity, signal.unit));
     MODCAL_REQUIRE(
         read.name == signal.quantity && read.unit == signal.unit,
         "{}: a signal named \"{}\" with the unit \"{}\" cannot be told from its heading; "
         "use a name without brackets and without blanks at its ends",
         file, signal.quantity, signal.unit);
+    MODCAL_REQUIRE(TimeColumns({&read, 1}).empty(),
+                   "{}: a column \"{}\" would be read as instants; rename the signal or its unit, "
+                   "or write another format",
+                   file, heading_text(signal.quantity, signal.unit));
   }
+}
+
+// A name that no signal has.
+std::string time_name(std::span<const Signal> signals) {
+  std::string name = "t";
+  while (std::ranges::find(signals, name, &Signal::quantity) != signals.end()) {
+    name = name == "t" ? "time" : name + '_';
+  }
+  return name;
 }
 
 // Headings first: numpy.genfromtxt(names=True) takes the first line for them.
@@ -93,7 +106,7 @@ void write_csv(const std::filesystem::path& path, std::span<const Signal> signal
   require_plain_headings(signals, name);
   const double rate = signals.front().sample_rate;
   std::vector<std::string> headings;
-  if (options.time_column) headings.emplace_back("t [s]");
+  if (options.time_column) headings.push_back(heading_text(time_name(signals), "s"));
   for (const Signal& signal : signals) {
     headings.push_back(heading_text(signal.quantity, signal.unit));
   }
@@ -101,7 +114,9 @@ void write_csv(const std::filesystem::path& path, std::span<const Signal> signal
   comments.insert(comments.end(), options.provenance.begin(), options.provenance.end());
   write_csv_table(path, headings, comments, signals.front().size(),
                   [&](std::size_t i, std::vector<double>& row) {
-                    if (options.time_column) row.push_back(static_cast<double>(i) / rate);
+                    if (options.time_column) {
+                      row.push_back(options.start + static_cast<double>(i) / rate);
+                    }
                     for (const Signal& signal : signals) row.push_back(signal.samples[i]);
                   });
 }

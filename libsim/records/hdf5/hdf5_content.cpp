@@ -10,6 +10,8 @@
 #include "libsim/base/utf8.hpp"
 #include "libsim/records/hdf5/hdf5_complex.hpp"
 #include "libsim/records/hdf5/hdf5_file.hpp"
+#include "libsim/records/hdf5/hdf5_matlab.hpp"
+#include "libsim/records/hdf5/hdf5_texts.hpp"
 
 namespace modcal {
 namespace {
@@ -73,31 +75,19 @@ bool is_own(hid_t dataset) {
          H5Pget_layout(layout.get()) != H5D_VIRTUAL;
 }
 
-template <typename Read>
-std::string text_of(hid_t type, const Read& read) {
-  constexpr std::size_t kLongest = 1 << 16;
-  if (H5Tis_variable_str(type) > 0) {
-    char* letters = nullptr;
-    if (read(type, static_cast<void*>(&letters)) < 0 || letters == nullptr) return {};
-    std::string text(letters, strnlen(letters, kLongest));
-    H5free_memory(letters);
-    return utf8_or_latin1(text);
-  }
-  const std::size_t size = H5Tget_size(type);
-  if (size == 0 || size > kLongest) return {};
-  std::string text(size, '\0');
-  if (read(type, static_cast<void*>(text.data())) < 0) return {};
-  return utf8_or_latin1(text.substr(0, text.find('\0')));
-}
-
 }  // namespace
 
 std::mutex& hdf5_lock() {
   static std::mutex mutex;
+  // What the library closes at the program's end may be what a damaged file left half open: it
+  // crashed there, after the file was refused.
+  static const herr_t left_open = H5dont_atexit();
+  static_cast<void>(left_open);
   return mutex;
 }
 
-Hdf5Content::Hdf5Content(Path path) : path_(std::move(path)) {
+Hdf5Content::Hdf5Content(Path path, bool is_matlab)
+    : path_(std::move(path)), is_matlab_(is_matlab) {
   const std::lock_guard lock(hdf5_lock());
   const std::uintmax_t bytes = std::filesystem::file_size(path_);
   // Headers of objects, hundreds of bytes each, are read in a millisecond; damaged ones may lead
@@ -113,15 +103,16 @@ Hdf5Content::Hdf5Content(Path path) : path_(std::move(path)) {
 void Hdf5Content::list() {
   const Hdf5Id file = opened();
   // As they were made, where the file knows; else by their names.
-  const bool known = H5Ovisit2(file.get(), H5_INDEX_CRT_ORDER, H5_ITER_INC, list_object, this,
-                               H5O_INFO_BASIC) >= 0;
-  if (!known) {
+  bool known = false;
+  for (const H5_index_t order : {H5_INDEX_CRT_ORDER, H5_INDEX_NAME}) {
+    if (known) break;
     arrays_.clear();
     places_.clear();
-    MODCAL_REQUIRE(
-        H5Ovisit2(file.get(), H5_INDEX_NAME, H5_ITER_INC, list_object, this, H5O_INFO_BASIC) >= 0,
-        "{}: its objects cannot be listed: {}: the file is damaged", path_.string(), last_error());
+    known = H5Ovisit2(file.get(), order, H5_ITER_INC, list_object, this, H5O_INFO_BASIC) >= 0;
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
+  MODCAL_REQUIRE(known, "{}: its objects cannot be listed: {}: the file is damaged", path_.string(),
+                 last_error());
   read_titles();
 }
 
@@ -143,7 +134,9 @@ Hdf5Id Hdf5Content::opened() const {
 herr_t Hdf5Content::list_object(hid_t root, const char* name, const H5O_info_t* info, void* self) {
   auto& content = *static_cast<Hdf5Content*>(self);
   if (content.arrays_.size() > kMostArrays) return 1;
-  if (info->type == H5O_TYPE_DATASET) content.add_dataset(root, name);
+  if (content.is_matlab_ && *name == '#') return 0;
+  const bool is_dataset = info->type == H5O_TYPE_DATASET;
+  if (is_dataset && !content.keeps([&] { content.add_dataset(root, name); })) return -1;
   if (info->type != H5O_TYPE_DATASET && info->type != H5O_TYPE_GROUP) return 0;
   const Hdf5Id object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
   if (!object.good()) return 0;
@@ -155,21 +148,23 @@ herr_t Hdf5Content::list_object(hid_t root, const char* name, const H5O_info_t* 
 herr_t Hdf5Content::list_attribute(hid_t object, const char* name, const H5A_info_t*, void* self) {
   auto& [content, of] = *static_cast<std::pair<Hdf5Content*, std::string>*>(self);
   const Hdf5Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  if (!attribute.good()) return 0;
+  const bool is_matlabs = content->is_matlab_ && std::string_view(name).starts_with("MATLAB_");
+  if (!attribute.good() || is_matlabs) return 0;
   const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose);
   const Hdf5Id space(H5Aget_space(attribute.get()), H5Sclose);
-  content->add({.object = of, .attribute = name}, type, space);
-  return 0;
+  return content->keeps([&] { content->add({.object = of, .attribute = name}, type, space); }) ? 0
+                                                                                               : -1;
 }
 
 void Hdf5Content::add_dataset(hid_t root, const std::string& name) {
   const Hdf5Id dataset(H5Dopen2(root, name.c_str(), H5P_DEFAULT), H5Dclose);
   MODCAL_REQUIRE(dataset.good(), "{}: the dataset {} cannot be read: {}: the file is damaged",
                  path_.string(), name, last_error());
-  if (!is_own(dataset.get())) return;
+  if (!is_own(dataset.get()) || (is_matlab_ && is_matlab_empty(dataset.get()))) return;
+  const bool is_letters = is_matlab_ && matlab_class(dataset.get()) == "char";
   const Hdf5Id type(H5Dget_type(dataset.get()), H5Tclose);
   const Hdf5Id space(H5Dget_space(dataset.get()), H5Sclose);
-  add({.object = name, .attribute = {}}, type, space);
+  add({.object = name, .attribute = {}, .is_letters = is_letters}, type, space);
 }
 
 void Hdf5Content::add(const Place& place, const Hdf5Id& type, const Hdf5Id& space) {
@@ -181,29 +176,36 @@ void Hdf5Content::add(const Place& place, const Hdf5Id& type, const Hdf5Id& spac
       .dims = *dims,
       .holds = holds(type.get()),
       .is_single = H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) < 8,
+      .is_integer = H5Tget_class(type.get()) == H5T_INTEGER,
       .place = places_.size()};
+  if (place.is_letters) array.holds = NamedArray::Holds::kText;
+  if (place.is_letters) array.dims = {array.dims[1], 1};
   const bool is_attribute = !place.attribute.empty();
   if (is_attribute) array.path.push_back(utf8_or_latin1(place.attribute));
   // A list in an attribute tells of its object; it is no channel.
-  if (is_attribute && array.size() != 1) return;
+  array.is_note = is_attribute && array.size() != 1;
+  if (array.is_note && array.size() != array.rows()) return;
   places_.push_back(place);
   places_.back().rank = static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get()));
   arrays_.push_back(std::move(array));
 }
 
-// Texts are few and short; the attribute `name` of a dataset is what it is called.
+// Texts are few and short: a unit a column at most. The attribute `name` of a dataset is what it is
+// called.
 void Hdf5Content::read_titles() {
   texts_.assign(places_.size(), {});
   for (const NamedArray& array : arrays_) {
-    const bool is_text = array.holds == NamedArray::Holds::kText && array.size() == 1;
-    if (is_text) texts_[array.place] = read_text(array);
+    constexpr std::size_t kMostTexts = 1 << 12;
+    const bool is_text = array.holds == NamedArray::Holds::kText && array.size() <= kMostTexts;
+    if (is_text) texts_[array.place] = read_texts(array);
   }
   for (const NamedArray& of : arrays_) {
     const Place& place = places_[of.place];
-    if (place.attribute != "name" || of.holds != NamedArray::Holds::kText) continue;
+    if (place.attribute != "name" || texts_[of.place].size() != 1) continue;
     for (NamedArray& array : arrays_) {
       const Place& other = places_[array.place];
-      if (other.attribute.empty() && other.object == place.object) array.title = texts_[of.place];
+      const bool is_its = other.attribute.empty() && other.object == place.object;
+      if (is_its) array.title = texts_[of.place].front();
     }
   }
 }
@@ -260,16 +262,17 @@ bool Hdf5Content::read_column(const NamedArray& array, std::size_t j,
                  samples.data()) >= 0;
 }
 
-std::string Hdf5Content::text(const NamedArray& array) { return texts_[array.place]; }
+std::vector<std::string> Hdf5Content::texts(const NamedArray& array) { return texts_[array.place]; }
 
-std::string Hdf5Content::read_text(const NamedArray& array) const {
+std::vector<std::string> Hdf5Content::read_texts(const NamedArray& array) const {
   const Place& place = places_[array.place];
   const Hdf5Id file = opened();
   if (place.attribute.empty()) {
     const Hdf5Id dataset(H5Dopen2(file.get(), place.object.c_str(), H5P_DEFAULT), H5Dclose);
     if (!dataset.good()) refuse(array);
+    if (place.is_letters) return matlab_letters(dataset.get(), array.size());
     const Hdf5Id type(H5Dget_type(dataset.get()), H5Tclose);
-    return text_of(type.get(), [&](hid_t as, void* to) {
+    return texts_of(type.get(), array.size(), [&](hid_t as, void* to) {
       return H5Dread(dataset.get(), as, H5S_ALL, H5S_ALL, H5P_DEFAULT, to);
     });
   }
@@ -278,7 +281,8 @@ std::string Hdf5Content::read_text(const NamedArray& array) const {
                          H5Aclose);
   if (!attribute.good()) refuse(array);
   const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose);
-  return text_of(type.get(), [&](hid_t as, void* to) { return H5Aread(attribute.get(), as, to); });
+  return texts_of(type.get(), array.size(),
+                  [&](hid_t as, void* to) { return H5Aread(attribute.get(), as, to); });
 }
 
 }  // namespace modcal

@@ -29,16 +29,18 @@ class Hdf5Id {
 /// a child of this process goes first (libsim/base/trial.hpp).
 class Hdf5Content : public ArrayFile {
  public:
-  /// Throws InvalidInput for what is no whole HDF5 file.
-  explicit Hdf5Content(std::filesystem::path path);
+  /// Of a MAT file of version 7.3 what MATLAB keeps for itself is left out, and what it calls
+  /// letters is text. Throws InvalidInput for what is no whole HDF5 file.
+  explicit Hdf5Content(std::filesystem::path path, bool is_matlab = false);
 
   std::vector<double> column(const NamedArray& array, std::size_t j) override;
-  std::string text(const NamedArray& array) override;
+  std::vector<std::string> texts(const NamedArray& array) override;
 
  private:
   /// What an array is in the file.
   struct Place {
     std::string object, attribute;  // attribute: empty for a dataset
+    bool is_letters = false;        // MATLAB's, which stand there as numbers
     std::size_t rank = 0;
   };
   static herr_t list_object(hid_t root, const char* name, const H5O_info_t* info, void* self);
@@ -48,13 +50,27 @@ class Hdf5Content : public ArrayFile {
   void list();
   void read_titles();
   bool read_column(const NamedArray& array, std::size_t j, std::span<double> samples) const;
-  std::string read_text(const NamedArray& array) const;
+  std::vector<std::string> read_texts(const NamedArray& array) const;
   Hdf5Id opened() const;
   [[noreturn]] void refuse(const NamedArray& array) const;
+  // What the library calls must not throw: it would leave open what it has opened. False: it has
+  // failed, and list() throws.
+  template <typename Work>
+  bool keeps(const Work& work) noexcept {
+    try {
+      work();
+      return true;
+    } catch (...) {
+      failure_ = std::current_exception();
+      return false;
+    }
+  }
 
   std::filesystem::path path_;
+  bool is_matlab_;
   std::vector<Place> places_;
-  std::vector<std::string> texts_;  // of the arrays that are one
+  std::vector<std::vector<std::string>> texts_;  // of the arrays that hold some
+  std::exception_ptr failure_;
 };
 
 }  // namespace modcal

@@ -94,6 +94,9 @@ std::vector<char> content_of(const WrittenArrays& arrays, const std::string& nam
     writer.add_attribute(writer.root(), arrays.axis.c_str(), H5T_NATIVE_DOUBLE,
                          arrays.axis_values.data());
   }
+  if (arrays.has_start()) {
+    writer.add_attribute(writer.root(), kStart, H5T_NATIVE_DOUBLE, &arrays.start);
+  }
   writer.add_text(writer.root(), "provenance", arrays.provenance);
   for (const WrittenArray& array : arrays.arrays) writer.add_array(array, arrays);
   return writer.content();

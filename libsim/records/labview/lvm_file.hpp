@@ -16,6 +16,6 @@ Recording read_lvm(const std::filesystem::path& path, const ReadOptions& options
 
 /// Writes one segment without columns X; every bit of the samples is kept.
 void write_lvm(const std::filesystem::path& path, std::span<const Signal> signals,
-               const std::string& provenance);
+               const RecordNotes& notes);
 
 }  // namespace modcal

@@ -58,7 +58,6 @@ double LvmReader::number(std::string_view text, std::size_t column) {
 
 void LvmReader::read_file_header() {
   MODCAL_REQUIRE(next(), "{}: byte 0: it has no line", file_.name());
-  if (line_.starts_with("\xef\xbb\xbf")) line_.erase(0, 3);
   MODCAL_REQUIRE(line_.starts_with("LabVIEW Measurement"),
                  "{}:1: a LabVIEW measurement file begins with \"LabVIEW Measurement\"; state "
                  "another format (csv, for numbers without a header)",
@@ -130,9 +129,7 @@ void LvmReader::take_tag(LvmSegment& segment) {
   } else if (begins_with("Delta_X")) {
     each([this](LvmChannel& channel, std::string_view text, std::size_t at) {
       channel.step = number(text, at);
-      PrintedDigits digits;
-      digits.add(number_);
-      channel.step_resolution = 0.5 * digits.resolution(channel.step) / std::abs(channel.step);
+      channel.step_text = number_;
     });
   }
 }

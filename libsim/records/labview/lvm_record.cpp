@@ -61,8 +61,15 @@ std::vector<LvmSegment> joined(std::vector<LvmSegment> segments) {
   return records;
 }
 
+// Of the first sample, after the date of the file [s]; a sum with a date has no room for the digits
+// of X0.
+double start_of(const LvmChannel& channel, double date) {
+  if (std::isnan(channel.start)) return channel.origin;
+  return channel.origin + (std::isnan(date) ? channel.start : channel.start - date);
+}
+
 StoredChannel stored(const std::shared_ptr<LvmChannel>& channel, const LvmSegment& segment,
-                     const std::string& file) {
+                     double date, const std::string& file) {
   StoredChannel result;
   result.head.name = channel->name;
   result.head.unit = channel->unit;
@@ -73,12 +80,21 @@ StoredChannel stored(const std::shared_ptr<LvmChannel>& channel, const LvmSegmen
   result.size = segment.is_estimated ? segment.rows : channel->samples.size();
   if (!channel->in_time) result.other_than_time = "function of no time";
   if (channel->has_gaps) result.other_than_time = "record with gaps";
+  if (channel->is_miscounted) {
+    result.other_than_time =
+        fmt::format("channel of {} samples, of which the line Samples announces {}: correct it",
+                    channel->samples.size(), channel->announced);
+  }
   if (result.size == 0) result.other_than_time = "channel without samples";
   if (!result.other_than_time.empty()) return result;
   if (channel->step > 0.0) {
-    result.sample_rate = rate_of_period(channel->step, channel->step_resolution);
+    const PrintedRate rate = rate_of_printed_period(channel->step_text, channel->step, "Delta_X");
+    result.sample_rate = rate.hertz;
+    result.rate_doubt = rate.doubt;
+    result.rate_rounding = rate.rounding;
+    result.period = channel->step;
     result.rate_source = fmt::format("Delta_X {:g} s", channel->step);
-    result.start = channel->origin + (std::isnan(channel->start) ? 0.0 : channel->start);
+    result.start = start_of(*channel, date);
   }
   result.read = [channel] { return channel->samples; };
   // Instants that are printed more coarsely than the step tell less than it.
@@ -90,10 +106,16 @@ StoredChannel stored(const std::shared_ptr<LvmChannel>& channel, const LvmSegmen
   return result;
 }
 
-// A file that modcal wrote has the rate to its last digit.
-void set_exact_rate(double stated, StoredChannel& channel) {
-  if (std::abs(stated / channel.sample_rate - 1.0) > 1e-12) return;
-  channel.sample_rate = stated;
+// A file that modcal wrote has the rate to its last digit, which Delta_X bears out as far as it was
+// printed.
+void set_exact_rate(double stated, const LvmChannel& channel, StoredChannel& result) {
+  PrintedDigits digits;
+  digits.add(channel.step_text);
+  const double off = std::abs(1.0 / stated - channel.step);
+  if (!(off <= 0.5 * digits.resolution(channel.step) + 1e-12 * channel.step)) return;
+  result.sample_rate = stated;
+  result.rate_doubt.clear();
+  result.rate_rounding = 0.0;
 }
 
 }  // namespace
@@ -107,9 +129,9 @@ Recording read_lvm(const std::filesystem::path& path, const ReadOptions& options
   for (const LvmSegment& segment : joined(std::move(segments))) {
     is_estimated = is_estimated || segment.is_estimated;
     for (const LvmChannel& channel : segment.channels) {
-      channels.push_back(stored(std::make_shared<LvmChannel>(channel), segment, path.string()));
-      if (std::isfinite(date)) channels.back().start -= date;
-      if (std::isfinite(stated)) set_exact_rate(stated, channels.back());
+      channels.push_back(
+          stored(std::make_shared<LvmChannel>(channel), segment, date, path.string()));
+      if (std::isfinite(stated)) set_exact_rate(stated, channel, channels.back());
     }
   }
   const std::size_t count = channels.size();

@@ -85,6 +85,8 @@ void LvmReader::read_segment() {
     channel.has_gaps = channel.samples.size() != segment.rows &&
                        channel.samples.size() != channel.announced &&
                        channel.samples.size() * announced != segment.rows * channel.announced;
+    channel.is_miscounted = channel.samples.size() > channel.announced && channel.announced > 0 &&
+                            channel.samples.size() * announced > segment.rows * channel.announced;
     if (channel.instants.empty()) continue;
     channel.instant_resolution = digits_[i].resolution(std::abs(channel.instants.back()));
   }

@@ -14,11 +14,12 @@ struct LvmChannel {
   std::string name, unit;
   std::size_t announced = 0;                                ///< samples
   double step = 1.0;                                        ///< Delta_X
-  double step_resolution = 0.0;                             ///< relative, as it was printed
+  std::string step_text = {};                               ///< as it was printed, with a point
   double origin = 0.0;                                      ///< X0
   double start = std::numeric_limits<double>::quiet_NaN();  ///< date and time [s]
   bool in_time = true;
   bool has_gaps = false;                  ///< rows without a value that no other rate explains
+  bool is_miscounted = false;             ///< more samples than its share of the packets announced
   std::vector<double> samples, instants;  ///< instants: empty without a column X
   double instant_resolution = 0.0;        ///< absolute, as they were printed [s]
 };

@@ -4,6 +4,7 @@
 #include <matio.h>
 
 #include <map>
+#include <set>
 
 #include "libsim/records/arrays/array_file.hpp"
 
@@ -16,7 +17,11 @@ class MatlabContent final : public ArrayFile {
   explicit MatlabContent(std::filesystem::path path);
 
   std::vector<double> column(const NamedArray& array, std::size_t j) override;
-  std::string text(const NamedArray& array) override;
+  std::vector<std::string> texts(const NamedArray& array) override;
+
+  /// Whether libmatio has told what each variable of numbers is. It passes over those of
+  /// version 7.3 whose class stands there in another form than MATLAB's, as h5py writes it.
+  bool is_complete() const { return is_complete_; }
 
  private:
   using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
@@ -27,9 +32,11 @@ class MatlabContent final : public ArrayFile {
   };
   void add_arrays(matvar_t* variable, std::vector<std::string> path, Leaf at);
   void read_heads();
+  bool passes_over_numbers(const std::set<std::string>& variables) const;
   const matvar_t& field(const NamedArray& array);
 
   std::filesystem::path path_;
+  bool is_complete_ = true;
   std::vector<Leaf> leaves_;
   std::map<std::string, Variable> read_;
 };

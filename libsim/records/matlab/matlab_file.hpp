@@ -12,10 +12,9 @@ namespace modcal {
 inline constexpr const char* kMatlabHeads = "modcal";
 
 /// Reads vectors and the columns of matrices as channels, fields of structures with dots in their
-/// names. The sample rate [Hz] is a number called sample_rate, fs or the like, or one over a number
-/// called dt or increment [s], in the same structure or around it; else a vector called t or time
-/// [s] tells it. Names and units are those of a structure `modcal` where write_matlab() left it;
-/// other files state no units. Throws InvalidInput for what is no whole MAT file.
+/// names, as recording_of() says. Names and units are those of a structure `modcal` where
+/// write_matlab() left it. A file of version 7.3 in which libmatio passes over numbers is read as
+/// HDF5. Throws InvalidInput for what is no whole MAT file.
 Recording read_matlab(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Response functions and coherences as functions_of() lists them.

@@ -73,7 +73,7 @@ void set(matvar_t& structure, const std::string& field, Variable value) {
 
 void write_all(mat_t* file, const WrittenArrays& arrays) {
   std::set<std::string> taken = {kMatlabHeads, "provenance", "sample_rate", "t",
-                                 "time",       "fs",         "dt"};
+                                 "time",       "fs",         "dt",          kStart};
   std::vector<std::string> names;
   for (const WrittenArray& array : arrays.arrays) {
     names.push_back(variable_name(array.name, arrays, taken));
@@ -93,6 +93,7 @@ void write_all(mat_t* file, const WrittenArrays& arrays) {
   }
   set(*heads, "provenance", text(arrays.provenance));
   write(column(arrays.axis, arrays.axis_values));
+  if (arrays.has_start()) write(column(kStart, {&arrays.start, 1}));
   for (std::size_t i = 0; i < names.size(); ++i) {
     const WrittenArray& array = arrays.arrays[i];
     write(array.is_complex ? complex_column(names[i], array) : column(names[i], array.numbers));

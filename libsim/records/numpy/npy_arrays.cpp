@@ -63,17 +63,21 @@ NamedArray::Holds holds(const NpyType& type) {
   return number_of_type(type) == nullptr ? NamedArray::Holds::kOther : NamedArray::Holds::kReal;
 }
 
-void append_utf8(std::uint32_t letter, std::string& text) {
-  if (letter < 0x80) {
-    text += static_cast<char>(letter);
-    return;
+std::string text_at(const char* begin, const NpyType& type) {
+  std::string result;
+  if (type.kind == 'S') {
+    result.assign(begin, type.size);
+    return result.substr(0, result.find('\0'));
   }
-  const int more = letter < 0x800 ? 1 : letter < 0x10000 ? 2 : 3;
-  constexpr std::array<std::uint32_t, 4> kFirst = {0, 0xc0, 0xe0, 0xf0};
-  text += static_cast<char>(kFirst[static_cast<std::size_t>(more)] | (letter >> (6 * more) & 0x3f));
-  for (int i = more - 1; i >= 0; --i) {
-    text += static_cast<char>(0x80 | (letter >> (6 * i) & 0x3f));
+  for (std::size_t i = 0; i + 4 <= type.size; i += 4) {
+    std::uint32_t letter = 0;
+    std::memcpy(&letter, begin + i, sizeof letter);
+    if (type.is_swapped) letter = __builtin_bswap32(letter);
+    if (letter == 0) break;
+    const bool is_letter = letter < 0xd800 || (letter > 0xdfff && letter < 0x110000);
+    append_utf8(is_letter ? letter : 0xfffd, result);
   }
+  return result;
 }
 
 // Two dimensions; more stay as they are.
@@ -100,6 +104,7 @@ void NpyArrays::add(const std::vector<std::string>& name, const std::string& pla
     NamedArray array{.path = name, .dims = table_of(header.shape), .place = stored_.size()};
     array.holds = has_objects ? NamedArray::Holds::kOther : holds(field.type);
     array.is_single = field.type.kind == 'f' && field.type.size < 8;
+    array.is_integer = field.type.kind == 'i' || field.type.kind == 'u';
     if (!field.name.empty()) {
       const ColumnHeading heading = parse_heading(utf8_or_latin1(field.name));
       array.path.push_back(heading.name);
@@ -147,29 +152,20 @@ std::vector<double> NpyArrays::column(const NamedArray& array, std::size_t j) {
   return samples;
 }
 
-std::string NpyArrays::text(const NamedArray& array) {
+std::vector<std::string> NpyArrays::texts(const NamedArray& array) {
   const Stored& stored = stored_[array.place];
-  constexpr std::size_t kLongestText = 1 << 16;
-  if (array.size() < 1 || stored.header.item_size > kLongestText) return {};
+  constexpr std::size_t kLongestText = 1 << 16, kMostTexts = 1 << 12;
+  const std::size_t item = stored.header.item_size;
+  if (array.size() > kMostTexts || item > kLongestText) return {};
   const NpyBytes bytes = stored.open();
-  std::vector<char> block(stored.header.data_begin + stored.header.item_size);
+  std::vector<char> block(stored.header.data_begin + array.size() * item);
   bytes(block.data(), block.size());
-  const char* const begin = block.data() + stored.header.data_begin + stored.field.offset;
-  const NpyType& type = stored.field.type;
-  std::string result;
-  if (type.kind == 'S') {
-    result.assign(begin, type.size);
-    return result.substr(0, result.find('\0'));
+  const char* at = block.data() + stored.header.data_begin + stored.field.offset;
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < array.size(); ++i, at += item) {
+    texts.push_back(text_at(at, stored.field.type));
   }
-  for (std::size_t i = 0; i + 4 <= type.size; i += 4) {
-    std::uint32_t letter = 0;
-    std::memcpy(&letter, begin + i, sizeof letter);
-    if (type.is_swapped) letter = __builtin_bswap32(letter);
-    if (letter == 0) break;
-    const bool is_letter = letter < 0xd800 || (letter > 0xdfff && letter < 0x110000);
-    append_utf8(is_letter ? letter : 0xfffd, result);
-  }
-  return result;
+  return texts;
 }
 
 }  // namespace modcal

@@ -14,7 +14,7 @@ class NpyArrays : public ArrayFile {
            const std::function<NpyBytes()>& open);
 
   std::vector<double> column(const NamedArray& array, std::size_t j) override;
-  std::string text(const NamedArray& array) override;
+  std::vector<std::string> texts(const NamedArray& array) override;
 
  private:
   struct Stored {

@@ -27,7 +27,7 @@ std::vector<StoredChannel> npz_functions(const std::filesystem::path& path);
 /// Writes a structured array of doubles: t [s] and a field a signal, "R1 [N]". Every bit of the
 /// samples is kept.
 void write_npy(const std::filesystem::path& path, std::span<const Signal> signals,
-               const std::string& provenance);
+               const RecordNotes& notes);
 
 /// Writes an array by its name, its unit as "NAME.unit", and the axis. Throws InvalidInput for a
 /// name that the axis has, and where the file cannot be written.

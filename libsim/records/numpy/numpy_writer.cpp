@@ -119,7 +119,7 @@ std::span<const char> bytes_of(std::span<const double> numbers) {
 
 }  // namespace
 
-void write_npy(const Path& path, std::span<const Signal> signals, const std::string&) {
+void write_npy(const Path& path, std::span<const Signal> signals, const RecordNotes& notes) {
   const std::string name = path.string();
   require_one_record(signals, name);
   for (const Signal& signal : signals) {
@@ -141,7 +141,7 @@ void write_npy(const Path& path, std::span<const Signal> signals, const std::str
     file << npy_header_text(fields + "]", fmt::format("({},)", size));
     std::vector<double> row(signals.size() + 1);
     for (std::size_t i = 0; i < size; ++i) {
-      row[0] = static_cast<double>(i) / rate;
+      row[0] = notes.start + static_cast<double>(i) / rate;
       for (std::size_t k = 0; k < signals.size(); ++k) row[k + 1] = signals[k].samples[i];
       file.write(bytes_of(row).data(), static_cast<std::streamsize>(bytes_of(row).size()));
     }
@@ -174,6 +174,7 @@ void write_npz(const Path& path, const WrittenArrays& arrays) {
                header(false, arrays.has_lines() ? vector_shape(arrays.axis_values.size()) : "()"),
                bytes_of(arrays.axis_values));
     if (arrays.has_lines()) writer.add(arrays.axis + ".unit", text_array("Hz"), {});
+    if (arrays.has_start()) writer.add(kStart, header(false, "()"), bytes_of({&arrays.start, 1}));
     for (const WrittenArray& array : arrays.arrays) {
       writer.add(array.name, header(array.is_complex, vector_shape(array.size())),
                  bytes_of(array.numbers));

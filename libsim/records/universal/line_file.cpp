@@ -12,6 +12,10 @@ LineFile::LineFile(const std::filesystem::path& path) : name_(path.string()) {
                  name_);
   size_ = std::filesystem::file_size(path);
   MODCAL_REQUIRE(size_ > 0, "{}: the file is empty", name_);
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  std::string begin(kByteOrderMark.size(), '\0');
+  file_.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  go_to({begin == kByteOrderMark ? begin.size() : 0, place_.line});
 }
 
 bool LineFile::next(std::string& line) {

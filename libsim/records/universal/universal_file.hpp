@@ -67,7 +67,7 @@ std::vector<StoredChannel> universal_functions(const std::filesystem::path& path
 
 /// One dataset 58b in doubles for each signal.
 void write_universal(const std::filesystem::path& path, std::span<const Signal> signals,
-                     const std::string& provenance);
+                     const RecordNotes& notes);
 
 /// The same for each function of frequency, as what it is, with even lines where a formula gives
 /// them to the last bit. Throws InvalidInput as write_functions() says, and for names and units

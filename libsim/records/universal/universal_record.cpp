@@ -180,6 +180,7 @@ StoredChannel stored(const std::filesystem::path& path, const UniversalFunction&
       return times;
     };
     channel.time_resolution = resolution_of(function);
+    channel.times_name = channel.place;
   }
   return channel;
 }

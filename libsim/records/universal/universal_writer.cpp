@@ -110,16 +110,17 @@ WrittenDataset dataset_of(const FileFunction& function, const std::optional<Even
 }  // namespace
 
 void write_universal(const std::filesystem::path& path, std::span<const Signal> signals,
-                     const std::string& provenance) {
+                     const RecordNotes& notes) {
   require_one_record(signals, path.string());
   for (const Signal& signal : signals) require_room(signal.quantity, signal.unit, path.string());
   write_datasets(path, signals.size(), [&](std::size_t i, const auto& write) {
     const Signal& signal = signals[i];
     write({.type = 1,
            .name = signal.quantity,
-           .provenance = provenance,
+           .provenance = notes.provenance,
            .last_id_line = fmt::format("sample_rate: {}", signal.sample_rate),
            .size = signal.size(),
+           .first = notes.start,
            .step = 1.0 / signal.sample_rate,
            .abscissa = axis_line(17, "Time", "s"),
            .ordinate = axis_line(quantity_of_unit(signal.unit), signal.unit),

@@ -36,6 +36,20 @@ TEST_F(Convert, EveryFormatKeepsEveryBit) {
   }
 }
 
+// The instant of the first sample, where the format has a place for it; a sound file has none.
+TEST_F(Convert, ARecordBeginsWhereItBegan) {
+  write("late.csv", "t [s],R1 [N]\n-0.125,1\n-0.124,2\n-0.123,4\n");
+  for (const RecordFormat& format : record_formats()) {
+    const std::string name = fmt::format("late{}", format.extensions.back());
+    const Outcome converted = modcal("convert late.csv " + name);
+    ASSERT_EQ(converted.code, 0) << converted.err;
+    const Recording read = read_record(path(name), "auto");
+    EXPECT_EQ(read.sample_rate, 1000.0) << name;
+    EXPECT_EQ(read.start, format.begins_at_zero ? 0.0 : -0.125) << name;
+    EXPECT_EQ(converted.err.find("begins at -0.125 s") != std::string::npos, format.begins_at_zero);
+  }
+}
+
 TEST_F(Convert, WhatStandsThereIsNeverReplaced) {
   write("mine.uff", "mine");
   const Outcome refused = modcal("convert a.csv mine.uff");
@@ -99,6 +113,21 @@ TEST_F(Convert, ADamagedFileIsRefusedWithItsPlace) {
   EXPECT_EQ(refused.code, 3);
   // The header holds the path of the folder, so the line of a byte depends on where the tests run.
   EXPECT_THAT(refused.err, ContainsRegex("c[.]uff:[0-9]+: dataset 58b: the file ends at byte 700"));
+}
+
+// The library had crashed at the program's end, on what it had opened of the file.
+TEST_F(Convert, ADamagedHeaderOfHdf5IsRefusedOnce) {
+  ASSERT_EQ(modcal("convert a.csv b.h5").code, 0);
+  std::string content = content_of(path("b.h5"));
+  // Version, rank and flags of a simple dataspace of 3 samples.
+  const std::string space("\x01\x01\x01\0\0\0\0\0\x03\0\0\0\0\0\0\0", 16);
+  const std::size_t at = content.rfind(space);
+  ASSERT_NE(at, std::string::npos);
+  content[at] = 9;
+  write("c.h5", content);
+  const Outcome refused = modcal("inspect c.h5");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("the file is damaged"));
 }
 
 const char* const kFunctions =

@@ -228,6 +228,21 @@ TEST_F(Inspect, ProposesModesOfAStrikeAndAForceByThem) {
               ElementsAre(HasSubstr("channels a 1 and a 2 are one signal")));
 }
 
+TEST_F(Inspect, ProposesModesOfResponseFunctions) {
+  write("f.csv",
+        "frequency [Hz],h1 [g/lbf],h1 imaginary [g/lbf],c1\n0,1,0,1\n0.5,2,1,1\n1,3,2,0.9\n");
+  const InspectionReport report = inspect(path("f.csv"));
+  EXPECT_THAT(report.problems, IsEmpty());
+  EXPECT_THAT(text(report), HasSubstr("2 functions of frequency, 3 lines from 0 to 1 Hz"));
+  EXPECT_THAT(text(report), HasSubstr("h1 [g/lbf], response function"));
+  const YAML::Node modes = YAML::Load(stanza(report));
+  EXPECT_EQ(modes["kind"].as<std::string>(), "fit_modes");
+  ASSERT_EQ(modes["functions"]["responses"].size(), 1u);
+  EXPECT_EQ(modes["functions"]["responses"][0]["channel"].as<std::string>(), "h1");
+  // A rate that is stated is one of a record in time.
+  EXPECT_FALSE(inspect(path("f.csv"), {.sample_rate = 1e3}).functions);
+}
+
 TEST_F(Inspect, ProposalLoadsAsItStands) {
   const std::vector<Signal> signals{{"x", "mN", kRate, {1.0, 2.0, 4.0}},
                                     {"y", "N", kRate, {3.0, 4.0, 5.0}}};

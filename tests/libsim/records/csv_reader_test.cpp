@@ -258,5 +258,23 @@ TEST_F(CsvReader, TakesTimeAndForceWithTheirUnitsBehindAMark) {
   }
 }
 
+TEST_F(CsvReader, ReadsTheSeparatorThatExcelStates) {
+  const Recording record = read("sep=;\nt [s];a [N];b\n0;0,5;1\n0,001;1,5;2\n");
+  EXPECT_EQ(record.sample_rate, 1000.0);
+  EXPECT_THAT(record.channels.at(0).samples, ElementsAre(0.5, 1.5));
+}
+
+// As pandas writes the numbers of rows.
+TEST_F(CsvReader, LeavesOutAColumnThatNumbersTheRows) {
+  const Recording record = read("# fs = 10\n,a [N],b\n0,1,2\n1,3,4\n2,5,6\n");
+  ASSERT_EQ(record.channels.size(), 2u);
+  EXPECT_EQ(record.channels[0].name, "a");
+  EXPECT_THAT(record.warnings, ElementsAre(HasSubstr("r.csv:2:1: column 1 has no name and numbers "
+                                                     "the rows: it is left out")));
+  EXPECT_THAT(read(",t,a\n0.0,0.0,1\n0.5,0.5,2\n").channels.at(0).name, "a");
+  EXPECT_THAT(error("# fs = 10\n,a\n0,1\n2,3\n"),
+              HasSubstr("r.csv:2:1: column 1 has no name; name every column"));
+}
+
 }  // namespace
 }  // namespace modcal::csv_reader_test

@@ -48,6 +48,59 @@ TEST_F(CsvTime, ForgivesTheRoundingOfPrintedInstants) {
   EXPECT_NEAR(read(text).sample_rate, 51200.0, 0.52);
 }
 
+// Whole numbers of hertz lie within the printed resolution of every one of these rates.
+TEST_F(CsvTime, AStepThatEveryInstantIsAMultipleOfIsTheStep) {
+  for (const char* const step : {"0.003", "0.006", "0.0007", "3e-5", "0.03", "0.012"}) {
+    for (const int rows : {60, 1000}) {
+      std::string text = "t [s],R1\n";
+      for (int i = 0; i < rows; ++i) text += fmt::format("{:.6g},0\n", i * std::stod(step));
+      EXPECT_DOUBLE_EQ(read(text).sample_rate, 1.0 / std::stod(step)) << step << ' ' << rows;
+    }
+  }
+}
+
+// First and last instant leave room for five whole numbers of hertz; those between them do not.
+TEST_F(CsvTime, AllInstantsTellTheRate) {
+  for (const double rate : {51200.0, 44100.0, 65536.0}) {
+    std::string text = "t [s],R1\n";
+    for (int i = 0; i < 1000; ++i) text += fmt::format("{:.6f},0\n", i / rate);
+    EXPECT_EQ(read(text).sample_rate, rate);
+  }
+}
+
+TEST_F(CsvTime, KnowsOtherWordsOfComments) {
+  EXPECT_EQ(read("# fs = 1000\nR1\n1\n").sample_rate, 1000.0);
+  EXPECT_EQ(read("R1\n# dt: 1 ms\n1\n").sample_rate, 1000.0);
+  EXPECT_EQ(read("# sample_rate: 10 Hz\n# dt: as set before\nR1\n1\n").sample_rate, 10.0);
+}
+
+TEST_F(CsvTime, KnowsTheUnitInTheKeyOfAComment) {
+  EXPECT_EQ(read("# fs [kHz] = 51.2\nR1\n1\n").sample_rate, 51200.0);
+  EXPECT_EQ(read("# dt (ms): 0.5000\nR1\n1\n").sample_rate, 2000.0);
+  EXPECT_THAT(error("# fs [kHz] = 51200 Hz\nR1\n1\n"), HasSubstr("the sample rate is not known"));
+}
+
+TEST_F(CsvTime, ACommentOfThePeriodTellsNoMoreThanItsDigits) {
+  EXPECT_THAT(error("# dt = 0.000023\nR1\n1\n"), HasSubstr("too coarsely to tell the sample rate"));
+  EXPECT_THAT(read("# dt = 0.000020\nR1\n1\n").warnings,
+              testing::ElementsAre(HasSubstr("from 48780.5 to 51282.1 Hz")));
+  EXPECT_EQ(read("# dt = 0.001\nt,R1\n0.0000,1\n0.0008,2\n0.0016,3\n").sample_rate, 1250.0);
+}
+
+TEST_F(CsvTime, KnowsTheUnitOfATimeInCapitals) {
+  EXPECT_EQ(read("TIME_S,R1\n0.0,1\n0.5,2\n").sample_rate, 2.0);
+  EXPECT_EQ(read("T [MS],R1\n0.0,1\n0.5,2\n").sample_rate, 2000.0);
+}
+
+TEST_F(CsvTime, KnowsASecondTimeByItsNumber) {
+  EXPECT_THAT(error("Time (s),a,Time (s) 2,b\n0,1,0.5,1\n1,2,1.5,2\n"),
+              HasSubstr("a is sampled at 0 s (Time), b at 0.5 s (Time 2)"));
+}
+
+TEST_F(CsvTime, KnowsWhenARecordBegins) {
+  EXPECT_EQ(read("t [ms],R1\n-100,1\n-99,2\n").start, -0.1);
+}
+
 TEST_F(CsvTime, ReportsInstantsPrintedTooCoarsely) {
   std::string text = "t,R1\n";
   for (int i = 0; i < 100; ++i) text += fmt::format("{:.5f},0\n", i / 51200.0);

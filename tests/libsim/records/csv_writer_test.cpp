@@ -74,6 +74,24 @@ TEST_F(CsvWriter, TimeColumnAloneGivesTheRateBack) {
   EXPECT_EQ(record.channels[0].samples, signals[0].samples);
 }
 
+// What is written is read again: a name of the time column's, units of time, headings with marks.
+TEST_F(CsvWriter, NoHeadingIsTakenForAnotherOne) {
+  const auto refusal = [this](const Signal& signal) {
+    return refusal_of([&] { write_csv(path("a.csv"), std::vector{signal}); });
+  };
+  const std::vector<double> samples = {1.0, 2.0};
+  const std::vector<Signal> named{{"t", "N", 4.0, samples}, {"%", "", 4.0, samples}};
+  write_csv(path("a.csv"), named);
+  const Recording record = read_csv(path("a.csv"));
+  EXPECT_EQ(record.channels.at(0).name, "t");
+  EXPECT_EQ(record.channels.at(0).unit, "N");
+  EXPECT_EQ(record.channels.at(1).name, "%");
+  EXPECT_THAT(refusal({"delay", "ms", 4.0, samples}),
+              HasSubstr("a column \"delay [ms]\" would be read as instants"));
+  EXPECT_THAT(refusal({"Time", "", 4.0, samples}), HasSubstr("would be read as instants"));
+  EXPECT_THAT(refusal({"F/mN", "", 4.0, samples}), HasSubstr("cannot be told from its heading"));
+}
+
 TEST_F(CsvWriter, WritesHeaderUnitsAndProvenance) {
   const std::vector<Signal> signals{{"R1", "N", 4.0, {0.1, 1e-300}}};
   write_csv(path("a.csv"), signals, {.time_column = true, .provenance = {"made: here"}});

@@ -22,7 +22,7 @@ struct Formats : FolderTest, testing::WithParamInterface<std::string_view> {
     return read_record(file(), std::string(GetParam()), options);
   }
   void write_signals(const std::vector<Signal>& signals) const {
-    record_format(file(), std::string(GetParam())).write(file(), signals, "a test");
+    record_format(file(), std::string(GetParam())).write(file(), signals, {"a test"});
   }
 };
 

@@ -236,7 +236,7 @@ TEST_F(FunctionsIn, NamesThatTellAnAxis) {
   const std::vector<Signal> record{{"T", "N", 100.0, {1.0, 2.0}}, {"x", "m", 100.0, {3.0, 4.0}}};
   for (const char* name : {"t.mat", "t.h5", "t.npz", "t.npy"}) {
     const std::string said =
-        refusal_of([&] { record_format(name, "auto").write(path(name), record, ""); });
+        refusal_of([&] { record_format(name, "auto").write(path(name), record, {}); });
     if (said != "accepted") {
       EXPECT_THAT(said, HasSubstr("would be taken for the ")) << name;
       continue;
@@ -326,6 +326,13 @@ TEST(EvenLinesOf, AreTheFewestDigits) {
   EXPECT_FALSE(even_lines(Lines{1.0, 1.0}));
   EXPECT_FALSE(even_lines(Lines{0.0, 1.0, std::numeric_limits<double>::quiet_NaN()}));
   EXPECT_EQ(printed_lines(1.0 / 3.0, 0.5).per, 1.0);
+}
+
+TEST_F(FunctionsIn, LevelsAreNotWrittenAsColumns) {
+  const FileFunctions all{.functions = {function_at({0.0, 1.0}, "h", "dB", "")}, .warnings = {}};
+  FileFunctions copy = all;
+  EXPECT_THAT(refusal_of([&] { write_functions(path("a.csv"), "auto", copy, ""); }),
+              HasSubstr("h is in \"dB\"; write magnitudes, not levels"));
 }
 
 }  // namespace

@@ -130,6 +130,93 @@ TEST_F(Lvm, TellsWhereAFileIsWrong) {
       HasSubstr("a gap of 0.003 s"));
 }
 
+// One channel without a column X.
+std::string with_step(std::string_view step, std::string_view more = "") {
+  return fmt::format(
+      "LabVIEW Measurement\t\nX_Columns\tNo\n***End_of_Header***\t\n\t\n{}Channels\t1\nSamples\t2\n"
+      "X0\t-0.5\nDelta_X\t{}\n***End_of_Header***\t\nX_Value\ta\tComment\n\t1\t\n\t2\t\n",
+      more, step);
+}
+
+TEST_F(Lvm, AStepTellsNoMoreThanItsDigits) {
+  EXPECT_DOUBLE_EQ(read(with_step("0.003000")).sample_rate, 1.0 / 0.003);
+  EXPECT_EQ(read(with_step("1.9531250E-5")).sample_rate, 51200.0);
+  for (const auto& [step, rate] : {std::pair("0.001000", 1000.0), {"0.000050", 20000.0}}) {
+    EXPECT_EQ(read(with_step(step)).sample_rate, rate);
+    EXPECT_THAT(read(with_step(step)).warnings, testing::IsEmpty()) << step;
+  }
+  for (const char* const step : {"0.003", "0.000023", "0.000700"}) {
+    EXPECT_THAT(refusal(with_step(step)), HasSubstr("too coarsely to tell the sample rate"))
+        << step;
+    EXPECT_EQ(read(with_step(step), {.sample_rate = 7.0}).sample_rate, 7.0);
+  }
+  const Recording doubted = read(with_step("0.000020"));
+  EXPECT_EQ(doubted.sample_rate, 50000.0);
+  EXPECT_THAT(doubted.warnings, ElementsAre(HasSubstr("from 48780.5 to 51282.1 Hz")));
+}
+
+// Whatever the last digit is: 204800, 64000, 1024 and 12500 Hz are printed so.
+TEST_F(Lvm, AStepThatMayBeThatOfAnotherUsualRateIsDoubted) {
+  for (const auto& [step, rate] : {std::pair("0.000005", 200000.0),
+                                   {"0.000016", 62500.0},
+                                   {"0.001", 1000.0},
+                                   {"0.000080", 12500.0}}) {
+    const Recording found = read(with_step(step));
+    EXPECT_EQ(found.sample_rate, rate);
+    EXPECT_THAT(found.warnings, ElementsAre(HasSubstr("state sample_rate where it is another one")))
+        << step;
+  }
+}
+
+TEST_F(Lvm, ARateThatTheStepLeavesOpenCanBeStated) {
+  const Recording found = read(with_step("0.000020"), {.sample_rate = 51200.0});
+  EXPECT_EQ(found.sample_rate, 51200.0);
+  EXPECT_THAT(found.warnings, testing::IsEmpty());
+  EXPECT_THAT(read(with_step("0.000020"), {.sample_rate = 44100.0}).contradictions,
+              ElementsAre(HasSubstr("the file says 50000 Hz, the stated 44100 Hz is used")));
+}
+
+TEST_F(Lvm, WhatModcalWroteHasItsRateAndItsBeginning) {
+  const double rate = 1.0 / 0.003;
+  record_format("a.lvm", "auto")
+      .write(path("a.lvm"), std::vector<Signal>{{"a", "N", rate, {1.0, 2.0}}}, {"a test", -0.25});
+  const Recording found = read_record(path("a.lvm"), "auto");
+  EXPECT_EQ(found.sample_rate, rate);
+  EXPECT_EQ(found.start, -0.25);
+  EXPECT_THAT(content_of(path("a.lvm")), HasSubstr("Delta_X\t3.0000000000000001E-03\t\n"));
+  // As it wrote before.
+  const std::string notes = fmt::format("Notes\tsample_rate: {}\n", rate);
+  EXPECT_EQ(read(with_step("0.003", notes)).sample_rate, rate);
+  EXPECT_EQ(read(with_step("0.001", notes)).sample_rate, 1000.0);
+}
+
+// To its last digit, although the date has ten before the point.
+TEST_F(Lvm, BeginsAtItsX0) {
+  std::string file = std::string(kHead) + segment("10:45:47", kRows);
+  file.replace(file.find("X0\t0.0000000000000000E+0\t0.0E+0"), 32, "X0\t-0.01\t-0.01");
+  EXPECT_EQ(read(file).start, -0.01);
+}
+
+TEST_F(Lvm, TheColumnXTellsTheRateOfACoarseStep) {
+  std::string rows;
+  for (int i = 0; i < 1000; ++i) rows += fmt::format("{:.6f}\t1\t2\n", i / 51200.0);
+  std::string file = std::string(kHead) + segment("10:45:47", rows);
+  for (std::size_t at = 0; (at = file.find("0.001000\t", at)) != std::string::npos; ++at) {
+    if (file.compare(at - 1, 1, "\t") == 0) file.replace(at, 8, "0.000020");
+  }
+  EXPECT_EQ(read(file).sample_rate, 51200.0);
+}
+
+TEST_F(Lvm, AChannelOfMoreSamplesThanItsShareIsLeftOut) {
+  std::string file = std::string(kHead) + segment("10:45:47", kRows);
+  file.replace(file.find("Samples\t3\t3"), 11, "Samples\t1\t3");
+  const Recording found = read(file);
+  EXPECT_EQ(found.channels.size(), 1u);
+  EXPECT_THAT(found.warnings,
+              ElementsAre(HasSubstr("3 samples, of which the line Samples announces "
+                                    "1")));
+}
+
 TEST_F(Lvm, HeadersAloneEstimateTheLength) {
   std::string rows;
   for (int i = 0; i < 3000; ++i) rows += fmt::format("{:.6f}\t1.500000\t-2.000000\n", 1e-3 * i);

@@ -1,6 +1,7 @@
 // MAT files: what modcal writes, and what MATLAB and other programs do, made here with libmatio.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <matio.h>
 #include <zlib.h>
 
@@ -26,6 +27,23 @@ class Matlab : public FolderTest {
   }
   std::string refusal() const {
     return refusal_of([&] { read(); });
+  }
+  // The class of a variable of a file of version 7.3 in another form; padded with zeros it has no
+  // room for one at its end.
+  void set_class(const char* variable, const std::string& name, H5T_str_t padding) const {
+    const hid_t whole = H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t dataset = H5Dopen2(whole, variable, H5P_DEFAULT);
+    ASSERT_GE(H5Adelete(dataset, "MATLAB_class"), 0);
+    const hid_t text = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+    H5Tset_size(text, name.size() + (padding == H5T_STR_NULLTERM ? 1 : 0));
+    H5Tset_strpad(text, padding);
+    const hid_t made = H5Acreate2(dataset, "MATLAB_class", text, space, H5P_DEFAULT, H5P_DEFAULT);
+    ASSERT_GE(H5Awrite(made, text, name.c_str()), 0);
+    H5Aclose(made);
+    H5Sclose(space);
+    H5Tclose(text);
+    H5Dclose(dataset);
+    H5Fclose(whole);
   }
 };
 
@@ -63,7 +81,7 @@ std::vector<Signal> two_signals() {
 
 TEST_F(Matlab, KeepsEveryBitNameAndUnitOfWhatIsWritten) {
   const std::vector<Signal> signals = two_signals();
-  record_format(file(), "mat").write(file(), signals, "a test");
+  record_format(file(), "mat").write(file(), signals, {"a test"});
   const Recording found = read();
   EXPECT_EQ(found.sample_rate, 51200.0);
   EXPECT_EQ(found.format, "MAT file, 2 channels");
@@ -95,6 +113,75 @@ TEST_F(Matlab, ReadsVectorsAndMatricesOfEveryVersion) {
     EXPECT_THAT(found.channels[2].samples, ElementsAre(4.0, 5.0, 6.0));
     std::filesystem::remove(file());
   }
+}
+
+// As h5py writes it: the class in a text that is filled up with zeros, not ended by one. libmatio
+// passes such variables over.
+TEST_F(Matlab, ReadsVariablesWhoseClassAnotherProgramWrote) {
+  {
+    MatWriter out(file(), MAT_FT_MAT73);
+    out.write(MatWriter::doubles("a", 3, {1.0, 2.0, 3.0}));
+    out.write(MatWriter::doubles("force", 3, {4.0, 5.0, 6.0}));
+    out.write(MatWriter::made<char>("force_unit", MAT_C_CHAR, MAT_T_UINT8, 1, {'m', 'N'}));
+    out.write(MatWriter::doubles("fs", 1, {44100.0}));
+  }
+  set_class("force", "double", H5T_STR_NULLPAD);
+  set_class("force_unit", "char", H5T_STR_NULLPAD);
+  const Recording found = read();
+  EXPECT_EQ(found.sample_rate, 44100.0);
+  ASSERT_EQ(found.channels.size(), 2u);
+  EXPECT_EQ(found.channels[1].name, "force");
+  EXPECT_EQ(found.channels[1].unit, "mN");
+  EXPECT_THAT(found.channels[1].samples, ElementsAre(4.0, 5.0, 6.0));
+}
+
+// libmatio knows no class for MATLAB's strings, dates and tables; all else is as it says.
+TEST_F(Matlab, PassesOverAString) {
+  {
+    MatWriter out(file(), MAT_FT_MAT73);
+    out.write(MatWriter::doubles("force", 3, {4.0, 5.0, 6.0}));
+    out.write(MatWriter::doubles("fs", 1, {44100.0}));
+    out.write(MatWriter::made<std::uint32_t>("name", MAT_C_UINT32, MAT_T_UINT32, 1, {1, 2, 3}));
+    out.write(MatWriter::made<char>("note", MAT_C_CHAR, MAT_T_UINT8, 1, {'a', 'b', 'c'}));
+  }
+  set_class("name", "string", H5T_STR_NULLTERM);
+  const Recording found = read();
+  ASSERT_EQ(found.channels.size(), 1u);
+  EXPECT_EQ(found.channels[0].name, "force");
+}
+
+TEST_F(Matlab, PassesOverAnEmptyField) {
+  {
+    MatWriter out(file(), MAT_FT_MAT5);
+    out.write(MatWriter::doubles("fs", 1, {44100.0}));
+    const char* fields[] = {"y", "note"};
+    std::size_t dims[] = {1, 1};
+    matvar_t* const structure = Mat_VarCreateStruct("s", 2, dims, fields, 2);
+    Mat_VarSetStructFieldByName(structure, "y", 0, MatWriter::doubles(nullptr, 2, {1.0, 2.0}));
+    out.write(structure);
+  }
+  EXPECT_EQ(read().channels.at(0).name, "s.y");
+}
+
+// Rows of a matrix of letters, and a cell of texts.
+TEST_F(Matlab, ReadsAUnitAColumn) {
+  {
+    MatWriter out(file(), MAT_FT_MAT5);
+    out.write(MatWriter::doubles("fs", 1, {44100.0}));
+    out.write(MatWriter::doubles("a", 3, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+    out.write(MatWriter::made<char>("a_units", MAT_C_CHAR, MAT_T_UINT8, 2, {'m', 'g', 'N', ' '}));
+    out.write(MatWriter::doubles("b", 3, {1.0, 2.0, 3.0}));
+    std::size_t dims[] = {1, 2};
+    matvar_t* cells[] = {MatWriter::made<char>(nullptr, MAT_C_CHAR, MAT_T_UINT8, 1, {'N'}),
+                         MatWriter::made<char>(nullptr, MAT_C_CHAR, MAT_T_UINT8, 1, {'g'})};
+    out.write(Mat_VarCreate("units", MAT_C_CELL, MAT_T_CELL, 2, dims, cells, 0));
+  }
+  const Recording found = read();
+  ASSERT_EQ(found.channels.size(), 3u);
+  EXPECT_EQ(found.channels[0].unit, "mN");
+  EXPECT_EQ(found.channels[1].unit, "g");
+  EXPECT_EQ(found.channels[2].unit, "");
+  EXPECT_THAT(found.warnings, ElementsAre(HasSubstr("units (\"N, g\") is not read")));
 }
 
 TEST_F(Matlab, ReadsIntegersSinglesAndCompressedVariables) {
@@ -156,7 +243,7 @@ TEST_F(Matlab, ComplexVariablesAndTextsAreNoRecords) {
 }
 
 TEST_F(Matlab, AFileCutOffAnywhereIsRefused) {
-  record_format(file(), "mat").write(file(), two_signals(), "a test");
+  record_format(file(), "mat").write(file(), two_signals(), {"a test"});
   std::ifstream whole(file(), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
   for (std::size_t size = 0; size < bytes.size(); ++size) {

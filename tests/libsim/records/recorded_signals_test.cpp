@@ -249,7 +249,7 @@ TEST_F(LoadRecord, ForeseesWhatReadingNeedsAndStopsWhenAsked) {
   const Signal signal{"R1", "N", 1000.0, std::vector<double>(300, 0.5)};
   for (const RecordFormat& format : record_formats()) {
     const std::filesystem::path file = path(fmt::format("s{}", format.extensions.front()));
-    format.write(file, std::span(&signal, 1), "test");
+    format.write(file, std::span(&signal, 1), {"test"});
     EXPECT_NEAR(size_of_record(file, "auto")->frames, 300, 1) << file;
     const std::atomic<bool> stop{true};
     EXPECT_THROW(read_record(file, "auto", {.stop = StopToken(stop)}), Interrupted) << file;

@@ -220,7 +220,7 @@ TEST_F(Universal, WhatIsWrittenIsReadToTheLastBit) {
                               {"plate, far end", "m/s2", 1023.5 / 3.0, std::vector<double>(1000)}};
   fill_uniform(StreamKey(5), signals[0].samples);
   fill_uniform(StreamKey(6), signals[1].samples);
-  write_universal(path("a.uff"), signals, "here");
+  write_universal(path("a.uff"), signals, {"here"});
   const Recording record = read_record(path("a.uff"), "auto");
   ASSERT_EQ(record.channels.size(), 2u);
   EXPECT_EQ(record.sample_rate, 1023.5 / 3.0);
@@ -229,6 +229,15 @@ TEST_F(Universal, WhatIsWrittenIsReadToTheLastBit) {
     EXPECT_EQ(record.channels[i].unit, signals[i].unit);
     EXPECT_EQ(record.channels[i].samples, signals[i].samples);
   }
+}
+
+TEST_F(Universal, AByteOrderMarkIsPassedOver) {
+  write_universal(path("a.uff"), std::vector<Signal>{{"R1", "N", 10.0, {1.0, 2.0}}},
+                  {.provenance = "here", .start = -0.5});
+  const Recording record =
+      read_record(write("b.uff", "\xef\xbb\xbf" + content_of(path("a.uff"))), "auto");
+  EXPECT_EQ(record.channels.at(0).samples, (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(record.start, -0.5);
 }
 
 TEST_F(Universal, TruncatedFilesAreReadOrRefusedWithThePlace) {
