@@ -5,6 +5,8 @@ decay_score.py BUILD OUT draws what each row of ROWS states, identifies every re
 records, accepted (exit code 0); of those accepted in how many hum is seen, a mode is lost (none within three half-widths of it), a
 mode is there that is none (2 % and 3 Hz from all), a warning tells one shape at one place; then frequencies and damping ratios more
 than 4 deviations off the nearest mode, and the largest, by the deviations alone and with f_unseen_hz and zeta_unseen beside them.
+`planes` are strings whose two reactions hold two planes, each with frequencies and damping of its own, `glides` strings of one plane whose
+frequencies fall with the amplitude: what is accepted of those has no right numbers.
 All that is drawn comes from numpy's default_rng((ROW, DRAW)). What is finished stays in OUT: the same command goes on there.
 """
 import argparse
@@ -23,6 +25,8 @@ ROWS = {
     "hum": {"modes": (1, 5), "sensors": (1, 5), "hum": (0.01, 0.2)},
     "pair": {"modes": (2, 2), "sensors": (1, 4), "apart": (0.05, 0.6)},
     "glide": {"modes": (1, 1), "sensors": (2, 4), "glide": (3e-4, 3e-2)},
+    "planes": {"planes": True},
+    "glides": {"planes": False},
 }
 
 
@@ -61,20 +65,56 @@ class Decay:
         self.channels += between(rng, 1e-3, 0.1) * rms * rng.standard_normal(self.channels.shape)
 
     def write(self, folder):
-        names = [f"a{k + 1}" for k in range(len(self.channels))]
-        head = f"# sample_rate: {self.rate:g} Hz\n" + ",".join(f"{name} [m/s2]" for name in names)
-        np.savetxt(folder / "decay.csv", self.channels.T, fmt="%.9g", delimiter=",", header=head, comments="")
-        responses = ", ".join(f"{{channel: {name}}}" for name in names)
-        (folder / "identify.yaml").write_text(
-            f"kind: identify\nstructure: {{record: {{file: decay.csv, responses: [{responses}]}}}}\n"
-            "identification: {lowest_frequency: 20 Hz, highest_frequency: 800 Hz}\n")
+        np.savetxt(folder / "decay.csv", self.channels.T, fmt="%.9g", delimiter=",", header=self.head(), comments="")
+        (folder / "identify.yaml").write_text(self.experiment())
+
+    def head(self):
+        return f"# sample_rate: {self.rate:g} Hz\n" + ",".join(f"a{k + 1} [m/s2]" for k in range(len(self.channels)))
+
+    def experiment(self):
+        responses = ", ".join(f"{{channel: a{k + 1}}}" for k in range(len(self.channels)))
+        return (f"kind: identify\nstructure: {{record: {{file: decay.csv, responses: [{responses}]}}}}\n"
+                "identification: {lowest_frequency: 20 Hz, highest_frequency: 800 Hz}\n")
+
+
+class StringDecay(Decay):
+    """Both reactions of a string that is let go, in two planes or with a tension that falls."""
+
+    def __init__(self, name, row, draw):
+        rng = np.random.default_rng((zlib.crc32(name.encode()), draw))
+        f0, stiffness, self.rate = between(rng, 80, 450), between(rng, 1e-5, 1e-3), 12000.0
+        n = np.arange(1, 1 + int(2250 / f0))
+        t = np.arange(int(rng.uniform(0.5, 2.0) * self.rate)) / self.rate
+        f = n * f0 * np.sqrt(1 + stiffness * n**2)
+        zeta = between(rng, 3e-4, 2e-3) * rng.uniform(0.7, 1.4, n.size)
+        shape = np.sin(n * np.pi * rng.uniform(0.08, 0.45)) / n
+        share, apart, damping = between(rng, 0.1, 1.0), between(rng, 2e-4, 4e-3) * rng.choice([-1, 1]), rng.uniform(0.5, 1.8)
+        seconds = f * (1 + apart * rng.uniform(0.7, 1.3, n.size)), zeta * damping * rng.uniform(0.8, 1.25, n.size)
+        glide = 0.0 if row["planes"] else between(rng, 3e-4, 3e-3)
+        falls = t + glide * (1 - np.exp(-4 * np.pi * zeta[0] * f[0] * t)) / (4 * np.pi * zeta[0] * f[0])
+        self.channels = np.zeros((2, t.size))
+        for frequencies, ratios, size in ((f, zeta, 1.0), (*seconds, share if row["planes"] else 0.0)):
+            for k in range(n.size):
+                omega = 2 * np.pi * frequencies[k]
+                signal = size * shape[k] * np.exp(-ratios[k] * omega * t) * np.cos(omega * np.sqrt(1 - ratios[k] ** 2) * falls)
+                self.channels += np.array([[1.0], [(-1.0) ** k]]) * signal
+        self.channels += between(rng, 1e-3, 0.05) * self.channels.std(axis=1, keepdims=True) * rng.standard_normal(self.channels.shape)
+        self.f, self.zeta = (np.concatenate(pair) if row["planes"] else pair[0] for pair in zip((f, zeta), seconds))
+        self.fundamental = f0 * (1 + rng.uniform(-0.005, 0.005))
+
+    def head(self):
+        return f"# sample_rate: {self.rate:g} Hz\nR1 [N],R2 [N]"
+
+    def experiment(self):
+        return ("kind: identify\nrecord: {file: decay.csv, left: {channel: R1}, right: {channel: R2}}\n"
+                f"fundamental: {self.fundamental:.6g} Hz\n")
 
 
 def identified(task):
     build, out, name, draw = task
     folder = out / f"{name}_{draw}"
     folder.mkdir(parents=True, exist_ok=True)
-    decay = Decay(name, ROWS[name], draw)
+    decay = (StringDecay if "planes" in ROWS[name] else Decay)(name, ROWS[name], draw)
     if not (folder / "said").exists():
         decay.write(folder)
         done = subprocess.run([build / "modcal", "run", folder / "identify.yaml", "--out", folder / "out"], capture_output=True, text=True)

@@ -61,6 +61,12 @@ void DecayRecord::require_valid() const {
   }
 }
 
+double DecayMode::power() const {
+  double sum = 0.0;
+  for (const std::complex<double>& of_channel : amplitude) sum += std::norm(of_channel);
+  return sum;
+}
+
 double rounding_level(double noise_rms, double step) {
   if (!(step > 0.0)) return 1.0;
   const double steps = noise_rms / step;

@@ -47,6 +47,8 @@ struct DecayMode {
   /// How much χ² would fall if its amplitude in every channel were a polynomial of second degree in
   /// time: what two poles behind one leave, and a frequency that changes.
   double departure = std::numeric_limits<double>::quiet_NaN();
+
+  double power() const;  ///< Σ_c |A_c|²
 };
 
 /// The decay through a low-pass filter, every stride-th sample kept. Only outputs for which all

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
+
+#include "libinverse/modes/exponential_moments.hpp"
+#include "libinverse/modes/tuning.hpp"
 
 namespace modcal {
 namespace {
-
-double size_of(const DecayMode& mode) {
-  double size = 0.0;
-  for (const auto& amplitude : mode.amplitude) size += std::norm(amplitude);
-  return size;
-}
 
 std::size_t chosen_of(const std::vector<DecayMode>& modes, std::size_t number,
                       const LawNumbers& law) {
@@ -22,7 +20,7 @@ std::size_t chosen_of(const std::vector<DecayMode>& modes, std::size_t number,
   std::size_t chosen = modes.size();
   for (std::size_t i = 0; i < modes.size(); ++i) {
     if (law.tells() && distance(modes[i]) > nearest + 0.01) continue;
-    if (chosen == modes.size() || size_of(modes[i]) > size_of(modes[chosen])) chosen = i;
+    if (chosen == modes.size() || modes[i].power() > modes[chosen].power()) chosen = i;
   }
   return chosen;
 }
@@ -70,8 +68,8 @@ NumberedModes modes_in_order(std::vector<DecayMode> modes, double lowest, double
 
 std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered) {
   double largest = 0.0;
-  for (const auto& [number, mode] : numbered) largest = std::max(largest, size_of(mode));
-  std::erase_if(others, [&](const DecayMode& other) { return size_of(other) < 0.01 * largest; });
+  for (const auto& [number, mode] : numbered) largest = std::max(largest, mode.power());
+  std::erase_if(others, [&](const DecayMode& other) { return other.power() < 0.01 * largest; });
   return others;
 }
 
@@ -107,7 +105,7 @@ Apart apart_of(const DecayMode& mode, const DecayMode& second) {
   const double in_deviations =
       std::max(std::abs(frequency) * mode.pole.frequency / deviation(&DecayPole::frequency),
                std::abs(ratio) / deviation(&DecayPole::damping_ratio));
-  return {.share = std::min(1.0, std::sqrt(size_of(second) / size_of(mode))),
+  return {.share = std::min(1.0, std::sqrt(second.power() / mode.power())),
           .distance = std::hypot(frequency, ratio),
           .certainty = in_deviations};
 }
@@ -127,7 +125,7 @@ Apart largest_of(const std::vector<Apart>& all) {
 }  // namespace
 
 void widen_by_seconds(NumberedModes& numbered, const std::multimap<std::size_t, DecayMode>& seconds,
-                      double least) {
+                      double least, double duration) {
   std::vector<Apart> all;
   for (const auto& [number, second] : seconds) {
     const Apart apart = apart_of(numbered.at(number), second);
@@ -137,20 +135,70 @@ void widen_by_seconds(NumberedModes& numbered, const std::multimap<std::size_t, 
   const Apart largest = largest_of(all);
   for (auto& [number, mode] : numbered) {
     if (seconds.contains(number)) continue;
-    const double shift =
-        largest.share * std::min(largest.distance, unseen_distance(mode, largest.share, least));
+    const double distance =
+        std::min(largest.distance, unseen_distance(mode, largest.share, least, duration));
+    const double shift = largest.share / (1.0 + largest.share) * distance;
     mode.deviation.frequency = std::hypot(mode.deviation.frequency, shift * mode.pole.frequency);
     mode.deviation.damping_ratio = std::hypot(mode.deviation.damping_ratio, shift);
   }
 }
 
-bool is_one_changing(const DecayMode& mode, const DecayMode& second) {
-  const std::complex<double> apart = second.pole.exponent() - mode.pole.exponent();
-  return std::abs(apart.imag()) < std::abs(apart.real()) && 9.0 * size_of(second) > size_of(mode);
+namespace {
+
+bool has_share(const DecayMode& mode, const DecayMode& second, double share) {
+  return second.power() > share * share * mode.power();
 }
 
-double unseen_distance(const DecayMode& mode, double share, double least) {
-  return 2.0 * mode.pole.damping_ratio * std::pow(least / (share * share * mode.evidence), 0.25);
+// By how much more two poles differ by frequency than by decay.
+double turn_over_decay(const DecayMode& mode, const DecayMode& second) {
+  const std::complex<double> apart = second.pole.exponent() - mode.pole.exponent();
+  return std::abs(apart.imag()) / std::abs(apart.real());
+}
+
+}  // namespace
+
+std::set<std::size_t> changing_of(const NumberedModes& numbered,
+                                  const std::multimap<std::size_t, DecayMode>& seconds) {
+  std::set<std::size_t> changing, two, more;
+  for (const auto& [number, second] : seconds) {
+    const DecayMode& mode = numbered.at(number);
+    const double turn = turn_over_decay(mode, second);
+    if (turn > kTurnOfTwo && has_share(mode, second, kShareOfTwo)) two.insert(number);
+    if (turn < 1.0 && has_share(mode, second, 1.0 / 3.0)) changing.insert(number);
+    const auto [first, last] = seconds.equal_range(number);
+    const auto loud = std::count_if(first, last, [&mode](const auto& other) {
+      return has_share(mode, other.second, kThirdPole);
+    });
+    if (loud > 1) more.insert(number);
+  }
+  if (more.empty() && two.size() > 2 * changing.size()) return {};
+  changing.merge(more);
+  return changing;
+}
+
+namespace {
+
+// Square of what t² exp(−dt) leaves of exp(−dt) and t exp(−dt) over that of exp(−dt) [s⁴].
+double square_of_curvature(double decay, double duration) {
+  // Behind exp(−40) nothing is left; over so much the sums are the integrals to a thousandth.
+  const std::size_t steps = 512;
+  if (2.0 * decay * duration > 40.0) duration = 20.0 / decay;
+  const auto sums = exponential_sums(-2.0 * decay * duration / static_cast<double>(steps), steps);
+  Eigen::Matrix3d products;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) products(i, j) = sums[static_cast<std::size_t>(i + j)].real();
+  }
+  const double left = products.determinant() / products.topLeftCorner<2, 2>().determinant();
+  return std::pow(duration, 4) * left / products(0, 0);
+}
+
+}  // namespace
+
+double unseen_distance(const DecayMode& mode, double share, double least, double duration) {
+  const double omega = 2.0 * std::numbers::pi * mode.pole.frequency;
+  const double told =
+      0.25 * mode.evidence * square_of_curvature(mode.pole.damping_ratio * omega, duration);
+  return (1.0 + share) / std::sqrt(share) * std::pow(least / told, 0.25) / omega;
 }
 
 std::vector<std::size_t> missing_in(const NumberedModes& numbered) {

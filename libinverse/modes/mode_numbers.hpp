@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "libinverse/modes/decay_record.hpp"
@@ -75,20 +76,26 @@ std::vector<std::size_t> missing_in(const NumberedModes& numbered);
 std::multimap<std::size_t, DecayMode> seconds_of(std::vector<DecayMode>& others,
                                                  const NumberedModes& numbered, double reach);
 
-/// Whether a mode and its second pole are rather one whose frequency or damping changes along the
-/// decay: that is a sum of poles of one frequency with ever faster decays, of which the second may
-/// be the larger. They differ by decay more than by frequency, and the second is above a third.
-bool is_one_changing(const DecayMode& mode, const DecayMode& second);
+/// Numbers of modes that are rather one whose frequency or damping changes along the decay than two
+/// poles, as of a string in two planes. Such a one is a sum of poles of one frequency with ever
+/// faster decays, of which the second may be the larger: they differ by decay more than by
+/// frequency, and the second is above a third. Or it has a third, above kThirdPole. Where no mode
+/// has that, and more than twice as many are sure to have two poles, by kTurnOfTwo, the string
+/// moves in two planes, and so do those.
+std::set<std::size_t> changing_of(const NumberedModes& numbered,
+                                  const std::multimap<std::size_t, DecayMode>& seconds);
 
-/// |Δ|/ω up to which a second pole of the share s of a mode's amplitude is not seen: its departure
-/// E s² (|Δ|/2d)⁴ is below `least` (leading order; of t² exp(−dt) what exp(−dt) and t exp(−dt)
-/// leave has the square 4/(2d)⁵), E being the evidence. The pole of both is off by up to sΔ.
-double unseen_distance(const DecayMode& mode, double share, double least);
+/// |Δ|/ω up to which a second pole of the share s of a mode's amplitude is not seen: about their
+/// mean both have the second moment Δ² s/(1 + s)² of an amplitude 1 + t²/2 Δ² s/(1 + s)², and χ²
+/// falls by less than `least` with it. Of t² exp(−dt) over the record's `duration` [s] counts what
+/// exp(−dt) and t exp(−dt) leave: of a long one 4/(2d)⁵ beside 1/(2d) of exp(−dt), which the
+/// evidence is of. The larger one is off the mean by Δ s/(1 + s).
+double unseen_distance(const DecayMode& mode, double share, double least, double duration);
 
 /// Deviations of modes that are one pole hold that they may be two as others are: s and |Δ|/ω are
 /// the largest that are told, |Δ| no more than what is not seen. Second poles farther away than 1 %
 /// are of something else.
 void widen_by_seconds(NumberedModes& numbered, const std::multimap<std::size_t, DecayMode>& seconds,
-                      double least);
+                      double least, double duration);
 
 }  // namespace modcal

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "libinverse/modes/decay_hum.hpp"
 #include "libinverse/modes/decay_record.hpp"
@@ -185,16 +186,14 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
     }
   }
   result.missing = missing_in(numbered);
+  result.duration = duration;
   const auto seconds = seconds_of(others, numbered, reach_of(fundamental, duration));
   result.others = heard_of(std::move(others), numbered);
   const double least = least_departure(result.poles.size(), decay.record.channels.size());
-  if (result.full_rank) widen_by_seconds(numbered, seconds, least);
+  if (result.full_rank) widen_by_seconds(numbered, seconds, least, duration);
+  const std::set<std::size_t> changing = changing_of(numbered, seconds);
   for (auto& [n, mode] : numbered) {
-    const auto [first, last] = seconds.equal_range(n);
-    const bool changes = std::any_of(first, last, [&mode = mode](const auto& second) {
-      return is_one_changing(mode, second.second);
-    });
-    if (result.full_rank && (changes || mode.departure > 2.0 * least)) {
+    if (result.full_rank && (changing.contains(n) || mode.departure > 2.0 * least)) {
       result.departing.push_back(n);
     }
     result.modes.push_back({n, std::move(mode)});
@@ -242,7 +241,8 @@ double unseen_shift(const PluckIdentification& found, const PluckedMode& plucked
   }
   constexpr double kThird = 1.0 / 3.0;
   const double least = least_departure(found.poles.size(), mode.amplitude.size());
-  return kThird * mode.pole.frequency * unseen_distance(mode, kThird, least);
+  const double distance = unseen_distance(mode, kThird, least, found.duration);
+  return kThird / (1.0 + kThird) * mode.pole.frequency * distance;
 }
 
 void require_decay_length(std::size_t samples, double sample_rate, const PluckOptions& options) {

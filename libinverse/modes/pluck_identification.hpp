@@ -48,6 +48,7 @@ struct PluckIdentification {
   std::vector<DecayMode> poles;  ///< of the fit, those that are no modes, too
   std::vector<double> lines;     ///< of the mains [Hz]
   std::vector<double> noise;     ///< residual of each channel within the band; empty for era
+  double duration = 0.0;         ///< of what was fitted [s]
   bool converged = false;        ///< the fit; true for era
   bool full_rank = false;        ///< error bars are known
 };

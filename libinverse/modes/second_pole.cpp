@@ -1,12 +1,9 @@
 #include "libinverse/modes/second_pole.hpp"
 
 #include <cmath>
-#include <complex>
 
 namespace modcal {
-namespace {
 
-// The record with nothing but some modes and what the fit leaves.
 DecayRecord alone(const DampedSinusoidFit& fit, const std::vector<std::size_t>& modes,
                   double sample_rate) {
   DecayRecord record{.sample_rate = sample_rate, .channels = fit.residual};
@@ -23,10 +20,9 @@ DecayRecord alone(const DampedSinusoidFit& fit, const std::vector<std::size_t>& 
   return record;
 }
 
-}  // namespace
-
-SecondPole fit_as_two(const DampedSinusoidFit& fit, std::size_t mode, double sample_rate,
-                      double reach, double least, const DampedSinusoidOptions& options) {
+SecondPole fit_one_more(const DampedSinusoidFit& fit, std::size_t mode, double sample_rate,
+                        double reach, double least, const DampedSinusoidOptions& options,
+                        const std::optional<DecayPole>& stated) {
   SecondPole best;
   std::vector<DecayPole> start;
   for (std::size_t k = 0; k < fit.modes.size(); ++k) {
@@ -38,19 +34,24 @@ SecondPole fit_as_two(const DampedSinusoidFit& fit, std::size_t mode, double sam
   const DecayRecord record = alone(fit, best.replaced, sample_rate);
   const std::complex<double> whole = startable(fit.modes[mode].pole, sample_rate).exponent();
   const double width = -whole.real() + sample_rate / static_cast<double>(record.samples());
-  start.emplace_back();
+  std::vector<DecayPole> places;
+  if (stated) places.push_back(*stated);
   for (const std::complex<double> apart : {std::complex<double>(0.0, width),
                                            {0.0, -width},
                                            {-width, 0.0},
                                            {-0.5 * whole.real(), 0.0}}) {
-    start.back() = startable(DecayPole::of_exponent(whole + apart), sample_rate);
-    const DampedSinusoidFit two = fit_damped_sinusoids(record, start, options);
-    best.work += work_of(two);
-    const double fall = chi_square_rise(two, fit, options.in_band_variance);
-    if (!two.converged || !two.full_rank || !(fall > least)) continue;
+    places.push_back(DecayPole::of_exponent(whole + apart));
+  }
+  start.emplace_back();
+  for (const DecayPole& place : places) {
+    start.back() = startable(place, sample_rate);
+    const DampedSinusoidFit more = fit_damped_sinusoids(record, start, options);
+    best.work += work_of(more);
+    const double fall = chi_square_rise(more, fit, options.in_band_variance);
+    if (!more.converged || !more.full_rank || !(fall > least)) continue;
     least = fall;
     best.poles.clear();
-    for (const DecayMode& found : two.modes) {
+    for (const DecayMode& found : more.modes) {
       best.poles.push_back(startable(found.pole, sample_rate));
     }
   }

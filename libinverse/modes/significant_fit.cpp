@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <span>
+#include <optional>
 
+#include "libinverse/modes/pole_distance.hpp"
 #include "libinverse/modes/residual_search.hpp"
 #include "libinverse/modes/second_pole.hpp"
 #include "libinverse/modes/tuning.hpp"
@@ -45,9 +46,9 @@ class Search {
   }
   /// The fit with poles that the residual has, and with two where one leaves what two would.
   DampedSinusoidFit extended(DampedSinusoidFit fit) {
-    const std::size_t most = 2 * fit.modes.size() + kPolesAdded;
+    const std::size_t most = kMostOfFirst * fit.modes.size() + kPolesAdded;
     while (fit.full_rank && fit.modes.size() < most && spent_ < kSearchCost) {
-      if (!add_from_residual(fit) && !split(fit)) break;
+      if (!extend(fit)) break;
     }
     return fit;
   }
@@ -78,7 +79,10 @@ class Search {
     std::vector<bool> out(fit.modes.size());
     for (std::size_t k = 0; k < out.size(); ++k) {
       const double level = noise.largest(fit.modes[k].pole.frequency);
-      out[k] = fit.modes[k].evidence < level * least_;
+      // A pole that stood badly may have run out of the band.
+      const double frequency = fit.modes[k].pole.frequency;
+      const bool is_within = frequency > 0.0 && frequency < 0.5 * record_.sample_rate;
+      out[k] = !is_within || fit.modes[k].evidence < level * least_;
     }
     if (std::ranges::find(out, true) == out.end()) return false;
     fit = without(fit, out);
@@ -113,10 +117,11 @@ class Search {
     return found;
   }
 
-  // The next of two fits where it is better by more than a pole of noise would make it.
+  // The next of two fits where it is better by more than a pole of noise would make it. One that
+  // has not come to its end goes on with the poles of the next round.
   bool take(DampedSinusoidFit& fit, DampedSinusoidFit next, double least) const {
-    const bool better = next.converged && next.full_rank && next.modes.size() > fit.modes.size() &&
-                        rise(next, fit) > least;
+    const bool better =
+        next.full_rank && next.modes.size() >= fit.modes.size() && rise(next, fit) > least;
     if (better) fit = std::move(next);
     return better;
   }
@@ -124,24 +129,13 @@ class Search {
     // Of eight samples for every pole there are two for every unknown of a single channel.
     const double cost = static_cast<double>(options_.iterations * poles.size() * record_.samples() *
                                             record_.channels.size());
-    if (8 * poles.size() > record_.samples() || spent_ + cost > kSearchCost) return false;
+    if (poles.empty() || 8 * poles.size() > record_.samples() || spent_ + cost > kSearchCost) {
+      return false;
+    }
     DampedSinusoidFit next = this->fit(poles);
     while (leave_out_weak(next)) {
     }
     return take(fit, std::move(next), least);
-  }
-  bool add(DampedSinusoidFit& fit, std::span<const DecayPole> more, double least) {
-    std::vector<DecayPole> poles = poles_of(fit);
-    for (const DecayPole& pole : more) poles.push_back(startable(pole, record_.sample_rate));
-    return !more.empty() && attempt(fit, poles, least);
-  }
-  bool add_from_residual(DampedSinusoidFit& fit) {
-    const std::vector<DecayPole> more = poles_in_residual(
-        fit, levels(fit), record_.sample_rate, options_.in_band_variance, least_with_pole_);
-    const std::span<const DecayPole> loudest =
-        std::span(more).first(std::min(more.size(), kPolesAdded));
-    return add(fit, loudest, least_with_pole_) ||
-           (loudest.size() > 1 && add(fit, loudest.first(1), least_with_pole_));
   }
 
   // Modes that depart from one damped sinusoid, those that do most first.
@@ -156,33 +150,77 @@ class Search {
     std::ranges::sort(found, std::greater(), [&](std::size_t k) { return fit.modes[k].departure; });
     return found;
   }
-  // Modes that depart, each as two: all of them at once, or the first alone.
-  bool split(DampedSinusoidFit& fit) {
-    // There are as many places for a second pole as modes.
-    const double least = least_of_second(fit);
-    const std::vector<DecayPole> whole = poles_of(fit);
-    std::vector<bool> changed(whole.size());
-    std::vector<DecayPole> first, all;
-    const auto with_others = [&](std::vector<DecayPole> poles) {
-      for (std::size_t k = 0; k < whole.size(); ++k) {
-        if (!changed[k]) poles.push_back(whole[k]);
+  // Where one of the residual's poles or a second one of a mode that departs stands beside modes,
+  // these are fitted with it alone first: from there the fit of all comes to its end in a few
+  // steps. Then all of them at once, or the first alone.
+  bool extend(DampedSinusoidFit& fit) {
+    Extension all{.whole = poles_of(fit), .changed = std::vector<bool>(fit.modes.size())};
+    Extension first = all;
+    for (const DecayPole& pole : in_residual(fit)) {
+      const std::size_t k = nearest_to(pole, fit);
+      if (k == fit.modes.size()) {
+        all.poles.push_back(startable(pole, record_.sample_rate));
+      } else {
+        all.take(fit_beside(fit, k, pole, least_with_pole_));
       }
-      return poles;
-    };
-    for (const std::size_t k : departing(fit)) {
-      if (changed[k]) continue;
-      const SecondPole two = fit_as_two(fit, k, record_.sample_rate, reach_, least, options_);
-      spent_ += two.work;
-      // A neighbor that is in two poles already waits for the next round, or it would be there
-      // twice.
-      const bool is_free =
-          std::ranges::none_of(two.replaced, [&](std::size_t i) { return changed[i]; });
-      if (two.poles.empty() || !is_free) continue;
-      all.insert(all.end(), two.poles.begin(), two.poles.end());
-      for (const std::size_t i : two.replaced) changed[i] = true;
-      if (first.empty()) first = with_others(two.poles);
+      if (first.poles.empty()) first = all;
     }
-    return !all.empty() && (attempt(fit, with_others(all), least) || attempt(fit, first, least));
+    // There are as many places for a second pole as modes.
+    for (const std::size_t k : departing(fit)) {
+      if (all.changed[k]) continue;
+      all.take(fit_beside(fit, k, {}, least_of_second(fit)));
+      if (first.poles.empty()) first = all;
+    }
+    const double least = least_of_second(fit);
+    return !all.poles.empty() &&
+           (attempt(fit, all.start(), least) ||
+            (first.poles.size() < all.poles.size() && attempt(fit, first.start(), least)));
+  }
+
+  // Poles in the place of some of those there are.
+  struct Extension {
+    std::vector<DecayPole> whole;
+    std::vector<bool> changed;
+    std::vector<DecayPole> poles = {};
+
+    // A neighbor that is in other poles already waits for the next round, or it would be there
+    // twice.
+    void take(const SecondPole& found) {
+      const auto is_changed = [&](std::size_t i) { return changed[i]; };
+      if (found.poles.empty() || std::ranges::any_of(found.replaced, is_changed)) return;
+      poles.insert(poles.end(), found.poles.begin(), found.poles.end());
+      for (const std::size_t i : found.replaced) changed[i] = true;
+    }
+    std::vector<DecayPole> start() const {
+      std::vector<DecayPole> result = poles;
+      for (std::size_t k = 0; k < whole.size(); ++k) {
+        if (!changed[k]) result.push_back(whole[k]);
+      }
+      return result;
+    }
+  };
+
+  SecondPole fit_beside(const DampedSinusoidFit& fit, std::size_t k,
+                        const std::optional<DecayPole>& start, double least) {
+    SecondPole found = fit_one_more(fit, k, record_.sample_rate, reach_, least, options_, start);
+    spent_ += found.work;
+    return found;
+  }
+  std::vector<DecayPole> in_residual(const DampedSinusoidFit& fit) const {
+    std::vector<DecayPole> poles = poles_in_residual(fit, levels(fit), record_.sample_rate,
+                                                     options_.in_band_variance, least_with_pole_);
+    poles.resize(std::min(poles.size(), kPolesAdded));
+    return poles;
+  }
+  // The mode beside which a pole stands; none: as many as there are.
+  std::size_t nearest_to(const DecayPole& pole, const DampedSinusoidFit& fit) const {
+    std::size_t nearest = fit.modes.size();
+    double least = reach_;
+    for (std::size_t k = 0; k < fit.modes.size(); ++k) {
+      const double apart = std::abs(fit.modes[k].pole.frequency - pole.frequency);
+      if (apart < least) least = apart, nearest = k;
+    }
+    return nearest;
   }
 
   const DecayRecord& record_;
@@ -247,7 +285,11 @@ DampedSinusoidFit fit_significant(const DecayRecord& record, const std::vector<D
   // Of roundings of the record the last steps may go on for ever; a hundredth is enough.
   DampedSinusoidFit fine = fit_damped_sinusoids(record, search.poles_of(fit), options);
   if (fine.converged || !fit.converged) fit = std::move(fine);
-  scale(fit, search.levels(fit));
+  const ResidualLevels levels = search.levels(fit);
+  scale(fit, levels);
+  if (fit.full_rank) {
+    widen_by_distance(fit, record.sample_rate, reach, options.in_band_variance, levels);
+  }
   return fit;
 }
 

@@ -14,6 +14,34 @@ namespace modcal {
 /// Halved: violin D accepted as it is.
 inline constexpr std::size_t kPolesAdded = 6;
 
+/// How many times the poles that there are at first a search may end with, and kPolesAdded.
+/// Source: of 26 modes in two planes the realization may show 8 at first.
+/// Range tried: 2 to 6, in 80 decays of strings in two planes.
+/// Doubled: as now.
+/// Halved: one of these is refused, as so much is left; with 2 six are.
+inline constexpr std::size_t kMostOfFirst = 6;
+
+/// By how much χ² may rise on the way to another distance of two poles, three deviations.
+/// Source: with two a string's mode of 80 was left 29 deviations off, the truth being allowed by 6.
+/// Range tried: 4 to 9, in 80 decays of strings in two planes.
+/// Doubled: not tried.
+/// Halved: five frequencies and damping ratios of 1700 are farther off than now.
+inline constexpr double kFarthestRise = 9.0;
+
+/// Directions in which two poles are taken apart, and steps of a fit at one distance.
+/// Source: what is told of them changes over a right angle; a fit starts next to its end.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+inline constexpr int kDirections = 8, kDistanceSteps = 12;
+
+/// Distance of two poles, of the width of the larger, that counts as none.
+/// Source: the pair's amplitude is then a straight line in time to a thousandth.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+inline constexpr double kNearestDistance = 0.05;
+
 /// Iterations times poles times samples times channels that the search for poles may take.
 /// Source: half a minute of one processor, for records that no few poles tell.
 /// Range tried: 1e9 to 4e9, also on 10 s of 11 modes in two planes.
@@ -29,6 +57,22 @@ inline constexpr double kSearchCost = 2e9;
 /// Doubled: deviations a third larger.
 /// Halved: a fifth smaller.
 inline constexpr double kRoundingExcess = 3.0;
+
+/// Share of a mode's amplitude from which on a third pole tells that the mode changes.
+/// Source: noise has poles beside loud modes of up to 0.002; of a glide the third has some percent.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+inline constexpr double kThirdPole = 0.03;
+
+/// How many times as much two poles differ by frequency as by decay, and their share, that tell
+/// planes rather than a mode that changes.
+/// Source: of 60 gliding strings by numpy (benchmarks/truth/decay_score.py) poles of a mode differ
+/// by 1 to 1.4, of strings in two planes by up to 36.
+/// Range tried: 1 and 2, by these: with 1 five glides are accepted.
+/// Doubled: not tried.
+/// Halved: those five.
+inline constexpr double kTurnOfTwo = 2.0, kShareOfTwo = 0.1;
 
 /// ln of what a line of the mains may seem to lose of its amplitude along a record without noise.
 /// Source: the voltage of the mains keeps within some percent for seconds.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "libinverse/modes/mode_numbers.hpp"
 #include "libinverse/modes/pluck_identification.hpp"
@@ -81,15 +82,50 @@ TEST(PluckNumbers, DeviationsHoldThatModesMayBeTwoAsOthersAre) {
   ASSERT_EQ(seconds.size(), 1u);
   EXPECT_EQ(seconds.begin()->first, 1u);
   ASSERT_EQ(others.size(), 1u);
-  widen_by_seconds(numbered, seconds, 30.0);
+  widen_by_seconds(numbered, seconds, 30.0, 100.0);
   EXPECT_DOUBLE_EQ(numbered.at(1).deviation.frequency, 1e-3);
-  const double shift = std::hypot(4e-4, 1e-4) / 3.0;
+  // Of the share 1/3 the larger one stands a quarter of the distance from the mean.
+  const double shift = std::hypot(4e-4, 1e-4) / 4.0;
   EXPECT_NEAR(numbered.at(2).deviation.frequency, std::hypot(1e-3, 400.0 * shift), 1e-9);
   EXPECT_NEAR(numbered.at(2).deviation.damping_ratio, std::hypot(1e-5, shift), 1e-9);
-  // x = (30/(s²E))^¼ = (30 · 9/9e8)^¼ of a mode as large as that; 2ζx is below 4e-4.
-  const double seen = 2e-3 * std::pow(30.0 * 9.0 / 9e8, 0.25);
+  // (2d)⁴ 30/E = (Δ² s/(1 + s)²)² of a mode as large as that.
+  const double seen = 4.0 / std::sqrt(3.0) * 2e-3 * std::pow(30.0 / 9e8, 0.25);
   ASSERT_LT(seen, 4e-4);
-  EXPECT_NEAR(numbered.at(3).deviation.frequency, std::hypot(1e-3, 600.0 * seen / 3.0), 1e-9);
+  EXPECT_NEAR(numbered.at(3).deviation.frequency, std::hypot(1e-3, 600.0 * seen / 4.0), 2e-5);
+}
+
+// Over a record in which a mode hardly decays t² is all but a constant and a slope by 1/180 of T⁴,
+// a fourth of which is of the second moment.
+TEST(PluckNumbers, AShortRecordTellsLessOfASecondPole) {
+  const DecayMode mode{.pole = {100.0, 1e-6}, .evidence = 1e6};
+  const double moment = std::sqrt(720.0 * 30.0 / 1e6);
+  EXPECT_NEAR(2.0 * std::numbers::pi * 100.0 * unseen_distance(mode, 1.0, 30.0, 0.5),
+              2.0 * std::sqrt(moment) / 0.5, 0.02);
+}
+
+DecayMode mode_at(double frequency, double damping_ratio, double size) {
+  return {.pole = {frequency, damping_ratio}, .amplitude = {size}};
+}
+
+// Decays 1 and 3 d apart: a mode that changes, or two poles. As in three other modes they differ by
+// frequency, this one is two as well; where one has a third pole, none is.
+TEST(PluckNumbers, ModesChangeUnlessMoreOfThemAreTwo) {
+  NumberedModes numbered;
+  std::multimap<std::size_t, DecayMode> seconds = {{1, mode_at(100, 3e-3, 0.5)}};
+  for (std::size_t n = 1; n <= 4; ++n) {
+    numbered.emplace(n, mode_at(100.0 * static_cast<double>(n), 1e-3, 1));
+  }
+  for (std::size_t n = 2; n <= 4; ++n) {
+    EXPECT_THAT(changing_of(numbered, seconds), testing::ElementsAre(1u)) << n;
+    seconds.emplace(n, mode_at(101.0 * static_cast<double>(n), 1.2e-3, 0.2));
+  }
+  EXPECT_THAT(changing_of(numbered, seconds), testing::IsEmpty());
+  seconds.emplace(3, mode_at(304, 1e-3, 0.02));
+  EXPECT_THAT(changing_of(numbered, seconds), testing::IsEmpty());
+  seconds.emplace(3, mode_at(305, 1e-3, 0.05));
+  EXPECT_THAT(changing_of(numbered, seconds), testing::ElementsAre(1u, 3u));
+  // A second pole below a third tells neither.
+  EXPECT_THAT(changing_of(numbered, {{1, mode_at(100, 3e-3, 0.3)}}), testing::IsEmpty());
 }
 
 TEST(PluckNumbers, BodiesBesideAModeWidenNothing) {
@@ -101,7 +137,7 @@ TEST(PluckNumbers, BodiesBesideAModeWidenNothing) {
                    .evidence = 1e4};
   }
   const DecayMode body{.pole = {205.0, 0.05}, .deviation = {0.1, 1e-3}, .amplitude = {1.0}};
-  widen_by_seconds(numbered, {{1, body}}, 30.0);
+  widen_by_seconds(numbered, {{1, body}}, 30.0, 100.0);
   EXPECT_DOUBLE_EQ(numbered[2].deviation.frequency, 1e-3);
 }
 
