@@ -37,13 +37,6 @@ constexpr int kContactRounds = 2;
 /// Halved: ± 2 to 2.3, all in it.
 constexpr double kLeastKnown = 0.01;
 
-/// Draws of force noise by which its share that a fit's columns take up is counted.
-/// Source: a draw has some hundred bins, eight of them tell the share to a tenth.
-/// Range tried: this.
-/// Doubled: not tried.
-/// Halved: not tried.
-constexpr std::uint64_t kForceNoiseDraws = 8;
-
 /// Share of the bins below which the participation ratio of a force's power is that of few lines.
 /// Source: sawtooth forces with 2.5 to 12 harmonics in the band on eight structures, two sensors:
 /// 87 to 100 % of the samples are in the band; forces of noise are as they were.

@@ -1,10 +1,12 @@
 #include "libinverse/structure/strikes/force_noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libinverse/structure/bin_evidence.hpp"
-#include "libinverse/structure/tuning.hpp"
+#include "libinverse/structure/strikes/tuning.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -22,16 +24,20 @@ class CommonNoise {
     }
   }
 
-  ForceNoise found() const {
-    ForceNoise result{.transfers = transfers_};
+  // quiet: what the forces read while nothing strikes [N].
+  ForceNoise found(double quiet) const {
+    ForceNoise result{.deviation = quiet, .transfers = transfers_};
+    if (fits_.size() < 2) return result;
     std::vector<Eigen::VectorXd> residuals;
     for (const SensorFit& fit : fits_) residuals.push_back(fit.residual);
-    const double alike = alike_in(residuals);
-    if (!(alike > 3.0 * std::sqrt(chance()))) return result;
+    const double alike = alike_in(residuals), least = 3.0 * std::sqrt(chance());
+    if (!(alike > least) && quiet == 0.0) return result;
     double expected = 0.0;
     for (std::uint64_t draw = 0; draw < kForceNoiseDraws; ++draw) expected += alike_in(drawn(draw));
     if (!(expected > 0.0)) return result;
-    result.deviation = std::sqrt(alike * static_cast<double>(kForceNoiseDraws) / expected);
+    const double most =
+        std::sqrt(std::max(alike, least) * static_cast<double>(kForceNoiseDraws) / expected);
+    result.deviation = alike > least ? most : std::min(quiet, most);
     return result;
   }
 
@@ -127,11 +133,25 @@ class CommonNoise {
 
 }  // namespace
 
-ForceNoise force_noise_of(std::span<const FittedStrike> strikes,
+double quiet_level(std::span<const double> force) {
+  const std::size_t length = force.size() / kQuietParts;
+  if (length < 2) return 0.0;
+  std::vector<double> deviations;
+  for (std::size_t i = 0; i < kQuietParts; ++i) {
+    deviations.push_back(standard_deviation(force.subspan(i * length, length)));
+  }
+  const double level = quantile(std::move(deviations), 0.25);
+  return level < kQuietShare * largest_magnitude(force) ? level : 0.0;
+}
+
+ForceNoise force_noise_of(std::span<const StructureRecord> records,
+                          std::span<const FittedStrike> strikes,
                           std::span<const BinWeights> weights, const ModalModel& model,
                           std::span<const SensorFit> fits,
                           std::span<const Eigen::MatrixXd> slopes) {
-  return CommonNoise(strikes, weights, model, fits, slopes).found();
+  double quiet = 0.0;
+  for (const StructureRecord& record : records) quiet = std::max(quiet, quiet_level(record.force));
+  return CommonNoise(strikes, weights, model, fits, slopes).found(quiet);
 }
 
 }  // namespace modcal

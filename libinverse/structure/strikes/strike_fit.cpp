@@ -140,7 +140,7 @@ class Fit {
     // Response functions have no force.
     ForceNoise force;
     if (!records_.front().force.empty()) {
-      force = force_noise_of(result_.strikes, weights_, table.model, fits, slopes);
+      force = force_noise_of(records_, result_.strikes, weights_, table.model, fits, slopes);
     }
     std::vector<Eigen::VectorXd> variances;
     std::vector<double> noise;

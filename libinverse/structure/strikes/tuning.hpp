@@ -1,0 +1,26 @@
+// Constants of the noise of a measured force that were set by trial.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace modcal {
+
+/// Draws of force noise by which its share that a fit's columns take up is counted.
+/// Source: a draw has some hundred bins, eight of them tell the share to a tenth.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::uint64_t kForceNoiseDraws = 8;
+
+/// Parts of a force's record of which a quarter and more is taken to be quiet, and their deviation
+/// over the force's peak from which on it acts all the time.
+/// Source: a blow lasts a hundredth of its record, and has a thousandth of its peak in noise; of
+/// random and stepped forces a quarter of a peak is left in every part.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kQuietParts = 20;
+constexpr double kQuietShare = 0.02;
+
+}  // namespace modcal
