@@ -15,6 +15,8 @@ bool stands_in_peaks(const StructureForce& found);
 /// A force that pushes one way; low: where the table's band begins [Hz].
 void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& loaded, double low,
                      ForceShape stated, StudyResult& result);
+/// Pulses where there are none.
+void doubt_pulses(const StructureForce& found, ForceShape stated, StudyResult& result);
 /// What was not tried, and what table and record do not tell.
 void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loaded,
                    const StructureTable& modes, StudyResult& result);

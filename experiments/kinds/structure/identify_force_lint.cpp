@@ -5,9 +5,27 @@
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
+#include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
+namespace {
+
+// Tables of one list of files, each of another place.
+void lint_named_once(const std::string& key, const std::string& table,
+                     const std::vector<std::string>& others, std::vector<Finding>& findings) {
+  std::vector<std::filesystem::path> before = {std::filesystem::path(table).lexically_normal()};
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const auto path = std::filesystem::path(others[i]).lexically_normal();
+    if (std::ranges::find(before, path) != before.end()) {
+      add_finding(findings, fmt::format("{}.{}", key, i),
+                  "{} is named twice: each contact has a table of its own", others[i]);
+    }
+    before.push_back(path);
+  }
+}
+
+}  // namespace
 
 std::vector<Finding> IdentifyForceOptions::lint() const {
   std::vector<Finding> findings = lint_responses("record.responses", record.responses.size());
@@ -16,6 +34,15 @@ std::vector<Finding> IdentifyForceOptions::lint() const {
                 "one response is explained by a force at any place: name a second sensor, or leave "
                 "the other places out");
   }
+  lint_named_once("other_places", table, other_places, findings);
+  lint_named_once("other_contacts", table, other_contacts, findings);
+  if (contour * window > kLongestWeighted) {
+    add_finding(
+        findings, "contour",
+        "{:g} 1/s leaves exp(-{:.3g}) of the record at the end of a window of {:g} s: state "
+        "a window of {:.3g} s or less, or a contour of {:.3g} 1/s or less",
+        contour, contour * window, window, kLongestWeighted / contour, kLongestWeighted / window);
+  }
   if (!other_contacts.empty()) {
     const std::size_t contacts = 1 + other_contacts.size(), sensors = record.responses.size();
     if (sensors <= contacts) {
@@ -23,15 +50,6 @@ std::vector<Finding> IdentifyForceOptions::lint() const {
                   "{} responses are explained by forces at {} contacts whatever they are: name {} "
                   "sensors or more, or fewer contacts",
                   sensors, contacts, contacts + 1);
-    }
-    std::vector<std::filesystem::path> before = {std::filesystem::path(table).lexically_normal()};
-    for (std::size_t i = 0; i < other_contacts.size(); ++i) {
-      const auto path = std::filesystem::path(other_contacts[i]).lexically_normal();
-      if (std::ranges::find(before, path) != before.end()) {
-        add_finding(findings, fmt::format("other_contacts.{}", i),
-                    "{} is named twice: each contact has a table of its own", other_contacts[i]);
-      }
-      before.push_back(path);
     }
     if (!other_places.empty()) {
       add_finding(findings, "other_places",

@@ -225,23 +225,49 @@ TEST_F(AnotherPlace, IsRefusedThoughAForceExplainsMostOfIt) {
 
 class Push : public FolderTest {
  protected:
-  // What answers to a blow answers to a push as its running sum: the other strike of configs/, held
-  // for so many samples and let go.
-  std::string held(std::size_t count) const {
-    Recording strike = read_csv(kFolder + "plate_other_strike.csv");
+  // What answers to a blow answers to many by their sum: the other strike of configs/, with such
+  // weights from every instant on.
+  std::string struck_by(const std::vector<double>& weights) const {
+    const Recording strike = read_csv(kFolder + "plate_other_strike.csv");
     std::string text = "# sample_rate: 4000 Hz\nforce [N]";
     for (std::size_t k = 1; k < 5; ++k) text += fmt::format(",a{} [m/s2]", k);
-    std::vector<double> sum(5, 0.0);
     for (std::size_t j = 0; j < strike.channels[0].samples.size(); ++j) {
       for (std::size_t k = 0; k < 5; ++k) {
-        const std::vector<double>& samples = strike.channels[k].samples;
-        sum[k] += samples[j] - (j < count ? 0.0 : samples[j - count]);
-        text += fmt::format("{}{:.9g}", k == 0 ? "\n" : ",", sum[k]);
+        double sum = 0.0;
+        for (std::size_t i = 0; i <= std::min(j, weights.size() - 1); ++i) {
+          sum += weights[i] * strike.channels[k].samples[j - i];
+        }
+        text += fmt::format("{}{:.9g}", k == 0 ? "\n" : ",", sum);
       }
     }
     return "record.file=" + write("record.csv", text + "\n").string();
   }
+  // A blow that is held for so many samples and let go.
+  std::string held(std::size_t count) const { return struck_by(std::vector<double>(count, 1.0)); }
 };
+
+// Pulses that are stated follow a smooth force where they stand, and their band holds half of it.
+TEST_F(Push, ASmoothForceIsNoneOfPulses) {
+  std::vector<double> weights;
+  for (int j = 0; j < 1000; ++j) {
+    weights.push_back(std::sin(0.11 * j) + std::sin(0.17 * j + 1.0) + std::sin(0.23 * j + 2.0));
+  }
+  const std::string smooth = struck_by(weights);
+  const StudyResult found = run("force_on_plate.yaml", {smooth, "shape=impacts"});
+  EXPECT_EQ(found.status, report::Status::kFailed);
+  EXPECT_THAT(found.answer, HasSubstr("rejected: shape: impacts is stated, but the responses are "
+                                      "those of a smooth force"));
+  const StudyResult blow = run("force_on_plate.yaml", {"shape=impacts"});
+  EXPECT_EQ(blow.status, report::Status::kOk) << blow.answer;
+}
+
+TEST(IdentifyForce, RefusesAContourThatLeavesNothingOfItsWindow) {
+  EXPECT_THAT(refusal_of([] {
+                run("force_on_plate.yaml", {"contour=400", "window=40 ms"});
+              }),
+              HasSubstr("400 1/s leaves exp(-16) of the record at the end of a window of 0.04 s: "
+                        "state a window of 0.03 s or less, or a contour of 300 1/s or less"));
+}
 
 TEST_F(Push, IsNoneOfBlows) {
   const std::string push = held(200);  // 50 ms

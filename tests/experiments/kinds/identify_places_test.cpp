@@ -47,6 +47,8 @@ TEST_F(PlacesOf, TheForceIsThatOfTheLikeliestPlace) {
   EXPECT_EQ(there[0].at("table"), right);
   here[0]["table"] = right;
   EXPECT_EQ(there, here);
+  EXPECT_THAT(refusal_of([&] { run("force_on_plate.yaml", {"other_places=[plate_modes.json]"}); }),
+              HasSubstr("plate_modes.json is named twice: each contact has a table of its own"));
   try {
     run("force_on_plate.yaml",
         {"other_places=[" + right + "]", "record.responses=[{channel: a1}]"});
