@@ -185,9 +185,8 @@ double square_of_curvature(double decay, double duration) {
   if (2.0 * decay * duration > 40.0) duration = 20.0 / decay;
   const auto sums = exponential_sums(-2.0 * decay * duration / static_cast<double>(steps), steps);
   Eigen::Matrix3d products;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) products(i, j) = sums[static_cast<std::size_t>(i + j)].real();
-  }
+  products << sums[0].real(), sums[1].real(), sums[2].real(), sums[1].real(), sums[2].real(),
+      sums[3].real(), sums[2].real(), sums[3].real(), sums[4].real();
   const double left = products.determinant() / products.topLeftCorner<2, 2>().determinant();
   return std::pow(duration, 4) * left / products(0, 0);
 }

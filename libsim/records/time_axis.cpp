@@ -117,7 +117,8 @@ double snapped_rate(std::span<const double> t, double step, double duration, dou
   const double side = rate < nearest ? -1.0 : 1.0;
   // Nearest first, one side and the other in turn.
   for (int i = 0; i < kMostRatesTried; ++i) {
-    const double whole = nearest + (i % 2 == 0 ? -side : side) * ((i + 1) / 2);
+    const int away = (i + 1) / 2;
+    const double whole = nearest + (i % 2 == 0 ? -side : side) * away;
     if (!(std::abs(whole - rate) <= most_off)) break;
     if (whole >= 1.0 && lie_on_grid(t, whole, resolution)) return whole;
   }

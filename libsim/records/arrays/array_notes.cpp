@@ -117,8 +117,9 @@ std::vector<double> numbers_of(const Content& content, const NamedArray& note) {
 void take_number(const Content& content, const NamedArray& array, std::size_t j,
                  std::string_view word, double& number, Packing& packing) {
   const std::vector<NamedArray>& arrays = content->arrays();
-  const NamedArray* note =
-      nearest(arrays, array, [word](const NamedArray& other) { return last_of(other) == word; });
+  const NamedArray* note = nearest(arrays, array, [word](const NamedArray& other) {
+    return other.path.back().size() == word.size() && last_of(other) == word;
+  });
   for (const NamedArray& other : arrays) {
     if (is_named_after(content, other, array, word)) note = &other;
   }

@@ -272,16 +272,14 @@ void CsvReader::use_time_axis(double stated) {
   if (given) {
     record_.sample_rate = axis.sample_rate;
     record_.compare_rate(options_.sample_rate, rounding, file_.name());
-  } else if (!std::isfinite(stated)) {
-    record_.sample_rate = axis.sample_rate;
-    record_.rate_source = fmt::format("column {}", column.channel.name);
-  } else if (axis.findings.empty() &&
+  } else if (std::isfinite(stated) && axis.findings.empty() &&
              std::abs(axis.sample_rate / stated - 1.0) > rounding + commented_.rate.rounding) {
     record_.add_problem(fmt::format(
         "{}:{}: the comment says {:.9g} Hz, column {} says {:.9g} Hz; correct one of them or state "
         "sample_rate",
         file_.name(), commented_.line, stated, column.channel.name, axis.sample_rate));
-  } else if (commented_.rate.rounding > rounding && std::isfinite(axis.sample_rate)) {
+  } else if (!std::isfinite(stated) ||
+             (commented_.rate.rounding > rounding && std::isfinite(axis.sample_rate))) {
     record_.sample_rate = axis.sample_rate;
     record_.rate_source = fmt::format("column {}", column.channel.name);
   }

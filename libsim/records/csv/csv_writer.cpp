@@ -52,7 +52,11 @@ void require_plain_headings(std::span<const Signal> signals, const std::string& 
 std::string time_name(std::span<const Signal> signals) {
   std::string name = "t";
   while (std::ranges::find(signals, name, &Signal::quantity) != signals.end()) {
-    name = name == "t" ? "time" : name + '_';
+    if (name == "t") {
+      name = "time";
+    } else {
+      name += '_';
+    }
   }
   return name;
 }

@@ -146,14 +146,15 @@ herr_t Hdf5Content::list_object(hid_t root, const char* name, const H5O_info_t* 
 }
 
 herr_t Hdf5Content::list_attribute(hid_t object, const char* name, const H5A_info_t*, void* self) {
-  auto& [content, of] = *static_cast<std::pair<Hdf5Content*, std::string>*>(self);
+  const auto& with = *static_cast<const std::pair<Hdf5Content*, std::string>*>(self);
+  Hdf5Content& content = *with.first;
   const Hdf5Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  const bool is_matlabs = content->is_matlab_ && std::string_view(name).starts_with("MATLAB_");
+  const bool is_matlabs = content.is_matlab_ && std::string_view(name).starts_with("MATLAB_");
   if (!attribute.good() || is_matlabs) return 0;
   const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose);
   const Hdf5Id space(H5Aget_space(attribute.get()), H5Sclose);
-  return content->keeps([&] { content->add({.object = of, .attribute = name}, type, space); }) ? 0
-                                                                                               : -1;
+  const auto add = [&] { content.add({.object = with.second, .attribute = name}, type, space); };
+  return content.keeps(add) ? 0 : -1;
 }
 
 void Hdf5Content::add_dataset(hid_t root, const std::string& name) {
