@@ -2,8 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "libinverse/modes/damped_sinusoid_problem.hpp"
 #include "libinverse/modes/second_pole.hpp"
@@ -67,11 +69,14 @@ class TiedPair {
     const Problem::Normal normal = problem_.normal_equations(state_, variances_);
     const Eigen::MatrixXd matrix = tie_.transpose() * normal.matrix * tie_;
     const Eigen::VectorXd along = tie_ * matrix.ldlt().solve(-tie_.transpose() * normal.slope);
-    for (double length = 1.0; length > 1e-2; length *= 0.3) {
+    double length = 1.0;
+    while (length > 1e-2) {
       Problem::State next = problem_.at(problem_.bounded(state_.poles + length * along));
-      if (!(cost(next) <= cost(state_))) continue;
-      state_ = std::move(next);
-      return true;
+      if (cost(next) <= cost(state_)) {
+        state_ = std::move(next);
+        return true;
+      }
+      length *= 0.3;
     }
     return false;
   }
@@ -119,20 +124,27 @@ std::array<DecayPole, 2> reached_by(const TiedPair& found, double duration) {
   const double width = -found.pole(0).real() + 1.0 / duration;
   const double nearest = kNearestDistance * width, farthest = 3.0 * width;
   TiedPair pair = found;
-  for (double size = 1.4; size < 30.0; size *= 1.4) {
+  double size = 1.4;
+  pair.fit_at(size * apart);
+  while (reached.note(pair) && 1.4 * size < 30.0) {
+    size *= 1.4;
     pair.fit_at(size * apart);
-    if (!reached.note(pair)) break;
   }
   pair = found;
-  for (double size = 0.7; size * std::abs(apart) > nearest; size *= 0.7) {
+  size = 0.7;
+  while (size * std::abs(apart) > nearest) {
     pair.fit_at(size * apart);
     if (!reached.note(pair)) return reached.most();
+    size *= 0.7;
   }
   for (int direction = 0; direction < kDirections; ++direction) {
+    const Complex towards = std::polar(1.0, 2.0 * std::numbers::pi * direction / kDirections);
     pair = found;
-    for (double size = nearest; size < farthest; size *= 2.0) {
-      pair.fit_at(std::polar(size, 2.0 * std::numbers::pi * direction / kDirections));
-      if (!reached.note(pair)) break;
+    size = nearest;
+    pair.fit_at(size * towards);
+    while (reached.note(pair) && 2.0 * size < farthest) {
+      size *= 2.0;
+      pair.fit_at(size * towards);
     }
   }
   return reached.most();
