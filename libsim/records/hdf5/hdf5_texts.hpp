@@ -25,7 +25,7 @@ std::vector<std::string> texts_of(hid_t type, std::size_t count, const Read& rea
     }
   } else {
     const std::size_t size = H5Tget_size(type);
-    if (size == 0 || size > kLongest) return {};
+    if (size == 0 || size > kLongest || count > (std::size_t{1} << 24) / size) return {};
     std::string letters(count * size, '\0');
     if (read(type, static_cast<void*>(letters.data())) < 0) return {};
     for (std::size_t i = 0; i < count; ++i) {
