@@ -195,19 +195,21 @@ void remove_parts() noexcept {
 
 PartFile::PartFile(fs::path target)
     : target_(std::move(target)), part_(with_random_end(target_, kPart)) {
-  descriptor_ = make_new_file(part_);
-  MODCAL_REQUIRE(descriptor_ >= 0,
-                 "{}: cannot be written: {}; check the folder and its permissions",
-                 target_.string(), std::strerror(errno));
-  struct flock lock = first_byte(F_WRLCK);
-  // Where a file system knows no locks, nothing is taken for abandoned either.
-  static_cast<void>(fcntl(descriptor_, F_OFD_SETLK, &lock));
+  // Named before it is made: a signal may come between the two.
   for (std::atomic<const char*>& name : part_names) {
     const char* none = nullptr;
     if (!name.compare_exchange_strong(none, part_.c_str())) continue;
     name_ = &name;
     break;
   }
+  descriptor_ = make_new_file(part_);
+  if (descriptor_ < 0 && name_ != nullptr) name_->store(nullptr);
+  MODCAL_REQUIRE(descriptor_ >= 0,
+                 "{}: cannot be written: {}; check the folder and its permissions",
+                 target_.string(), std::strerror(errno));
+  struct flock lock = first_byte(F_WRLCK);
+  // Where a file system knows no locks, nothing is taken for abandoned either.
+  static_cast<void>(fcntl(descriptor_, F_OFD_SETLK, &lock));
 }
 
 PartFile::~PartFile() {
