@@ -234,15 +234,19 @@ std::string frequencies_of(const std::vector<std::size_t>& modes, const StrikeFi
 }
 
 void warn_of_modes(const StrikeFit& fit, StudyResult& result) {
-  std::vector<std::size_t> disputed;
-  std::ranges::set_difference(fit.disputed, fit.stand_ins, std::back_inserter(disputed));
-  if (!disputed.empty()) {
-    result.warn(fmt::format(
-        "the sensors do not agree on the modes at {} Hz, as where two that stand close together "
-        "are taken for one: their deviations are wide by that; a longer record, contour: with a "
-        "smaller one, or a sensor elsewhere may part them",
-        frequencies_of(disputed, fit)));
-  }
+  const auto warn = [&](const std::vector<std::size_t>& modes, std::string_view text) {
+    std::vector<std::size_t> rest;
+    std::ranges::set_difference(modes, fit.stand_ins, std::back_inserter(rest));
+    if (!rest.empty()) result.warn(fmt::format(fmt::runtime(text), frequencies_of(rest, fit)));
+  };
+  warn(fit.disputed,
+       "the sensors do not agree on the modes at {} Hz, as where two that stand close together are "
+       "taken for one: their deviations are wide by that; a longer record, contour: with a smaller "
+       "one, or a sensor elsewhere may part them");
+  warn(fit.doubled,
+       "what rings late tells of two modes in the place of each of those at {} Hz: two stand close "
+       "together, or the frequency of one falls with its amplitude; their deviations are wide by "
+       "that, and contour: with a smaller one parts two");
   if (fit.stand_ins.empty()) return;
   result.warn(fmt::format(
       "modes at {} Hz may be none of the structure's, but stand for what no other mode explains: "

@@ -94,4 +94,31 @@ FurtherStrike further_strike(const Eigen::MatrixXd& values, const Eigen::VectorX
   return {.deviations = further.sqrt(), .scatters = scatters};
 }
 
+std::vector<std::vector<ModalPole>> poles_of_each(const std::vector<SearchedStrike>& strikes,
+                                                  const std::vector<SensorKind>& kinds,
+                                                  const std::vector<ModalPole>& all) {
+  std::vector<std::vector<ModalPole>> each(strikes.size(), all);
+  for (std::size_t i = 0; i < strikes.size(); ++i) {
+    PoleSearch(std::span(strikes).subspan(i, 1), kinds).fit(each[i], 30);
+  }
+  return each;
+}
+
+FurtherStrike further_strike(const std::vector<std::vector<ModalPole>>& each,
+                             const std::vector<ModalPole>& all, double ModalPole::*quantity,
+                             const std::vector<double>& told) {
+  const auto logarithms = [quantity](const std::vector<ModalPole>& poles) {
+    Eigen::VectorXd result(std::ssize(poles));
+    std::ranges::transform(poles, result.begin(),
+                           [quantity](const ModalPole& pole) { return std::log(pole.*quantity); });
+    return result;
+  };
+  Eigen::MatrixXd values(std::ssize(each), std::ssize(all));
+  for (std::size_t i = 0; i < each.size(); ++i) {
+    values.row(static_cast<Eigen::Index>(i)) = logarithms(each[i]);
+  }
+  return further_strike(values, Eigen::Map<const Eigen::VectorXd>(told.data(), std::ssize(told)),
+                        logarithms(all));
+}
+
 }  // namespace modcal

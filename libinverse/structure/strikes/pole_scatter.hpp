@@ -1,7 +1,7 @@
 // What several strikes say of a further one.
 #pragma once
 
-#include <Eigen/Core>
+#include "libinverse/structure/strikes/pole_search.hpp"
 
 namespace modcal {
 
@@ -22,5 +22,16 @@ struct FurtherStrike {
 /// common: of that fit, N. Throws InvalidInput for one strike or other sizes.
 FurtherStrike further_strike(const Eigen::MatrixXd& values, const Eigen::VectorXd& told,
                              const Eigen::VectorXd& common);
+
+/// Poles fitted to each strike alone, from those of all on.
+std::vector<std::vector<ModalPole>> poles_of_each(const std::vector<SearchedStrike>& strikes,
+                                                  const std::vector<SensorKind>& kinds,
+                                                  const std::vector<ModalPole>& all);
+
+/// The same of the logarithm of `quantity`, by the poles of each strike and of all; told: the
+/// deviations of the latter.
+FurtherStrike further_strike(const std::vector<std::vector<ModalPole>>& each,
+                             const std::vector<ModalPole>& all, double ModalPole::*quantity,
+                             const std::vector<double>& told);
 
 }  // namespace modcal

@@ -46,6 +46,9 @@ struct StrikeFit {
   /// Modes that the sensors pull apart (PoleSearch::variance_between()), as two that stand so close
   /// that they are taken for one. Their deviations hold that.
   std::vector<std::size_t> disputed;
+  /// Modes in whose place two fit better what rings late, by BIC on a finer contour: they stand
+  /// close together, or the frequency of one falls with its amplitude. Deviations hold both.
+  std::vector<std::size_t> doubled;
   /// By how much ln f and ln ζ of a mode differ from strike to strike, rms; the median of the
   /// modes. NaN: one strike.
   double frequency_scatter = std::numeric_limits<double>::quiet_NaN();

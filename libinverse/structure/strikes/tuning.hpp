@@ -1,4 +1,4 @@
-// Constants of the noise of a measured force that were set by trial.
+// Constants of the noise of a measured force, and of modes that may be two, that were set by trial.
 #pragma once
 
 #include <cstddef>
@@ -22,5 +22,21 @@ constexpr std::uint64_t kForceNoiseDraws = 8;
 /// Halved: not tried.
 constexpr std::size_t kQuietParts = 20;
 constexpr double kQuietShare = 0.02;
+
+/// Half-widths about a mode, on the contour, in whose bins two modes are tried in its place.
+/// Source: two modes that are taken for one stand within five half-widths.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kReachOfPair = 8.0;
+
+/// What a fit is asked of a contour of a finer σ: over that of the fit, and of the record's length
+/// at least.
+/// Source: at 5/T the amplitude that is left at the record's end is a hundredth.
+/// Range tried: these.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr int kLateSteps = 4;
+constexpr double kLateContour = 0.25, kLeastLate = 4.0;
 
 }  // namespace modcal

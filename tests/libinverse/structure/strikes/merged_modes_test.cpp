@@ -55,5 +55,49 @@ TEST(MergedModes, AreDoubtedWhereTheSensorsPullThemApart) {
   EXPECT_TRUE(fit_of({{1.0, 0.0}, {0.3, 0.0}, {0.8, 0.0}}).disputed.empty());
 }
 
+// A blow of 10 ms that one sensor answers for 3 s, with 2 % of its rms in noise.
+StrikeFit fit_of_blow(const std::vector<ModalPole>& poles, const std::vector<double>& constants) {
+  constexpr double rate = 1200.0;
+  constexpr std::size_t samples = 3600, blow = 12;
+  StructureRecord record{.sample_rate = rate, .force = std::vector<double>(samples, 0.0)};
+  std::vector<double>& response = record.responses.emplace_back(samples, 0.0);
+  for (std::size_t i = 1; i < blow; ++i) {
+    const double sine = std::sin(0.5 * kTurn * static_cast<double>(i) / blow);
+    record.force[i] = 50.0 * sine * sine;
+  }
+  for (std::size_t n = 0; n < poles.size(); ++n) {
+    const auto [omega, zeta] = poles[n];
+    const double damped = omega * std::sqrt(1.0 - zeta * zeta);
+    for (std::size_t i = 1; i < blow; ++i) {
+      for (std::size_t j = i; j < samples; ++j) {
+        const double t = static_cast<double>(j - i) / rate;
+        response[j] += record.force[i] / rate * constants[n] / damped *
+                       std::exp(-zeta * omega * t) * std::sin(damped * t);
+      }
+    }
+  }
+  double power = 0.0;
+  for (const double x : response) power += x * x / samples;
+  std::vector<double> normal(samples);
+  fill_standard_normal(StreamKey(3).with("noise"), normal);
+  for (std::size_t j = 0; j < samples; ++j) response[j] += 0.02 * std::sqrt(power) * normal[j];
+  return fit_strikes({record}, {SensorKind::kDisplacement},
+                     {.low = 20.0, .high = 300.0, .most_modes = 2});
+}
+
+// On the contour of 20/T, by which a tenth of the record counts, the two are one.
+TEST(MergedModes, AreDoubtedByWhatRingsLate) {
+  const ModalPole low{kTurn * 40.0, 0.006}, first{kTurn * 71.0, 0.009}, second{kTurn * 72.4, 0.009};
+  const StrikeFit merged = fit_of_blow({low, first, second}, {1.0, 0.6, 0.4});
+  ASSERT_EQ(merged.table.model.poles.size(), 2u);
+  EXPECT_EQ(merged.doubled, std::vector<std::size_t>{1});
+  const double found = merged.table.frequency(1);
+  const double deviation = found * merged.table.frequency_deviations[1];
+  EXPECT_LT(std::min(std::abs(found - 71.0), std::abs(found - 72.4)), 2.0 * deviation);
+  const StrikeFit alone = fit_of_blow({low, first}, {1.0, 0.6});
+  EXPECT_TRUE(alone.doubled.empty());
+  EXPECT_LT(alone.table.frequency(1) * alone.table.frequency_deviations[1], 0.1 * deviation);
+}
+
 }  // namespace
 }  // namespace modcal::merged_modes_test
