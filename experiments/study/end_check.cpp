@@ -143,6 +143,11 @@ bool check_one_string(const ObservationOptions& options, const RecordedSignals& 
     const std::optional<double> gain = gain_of_right(ends, string_of(options));
     MODCAL_REQUIRE(!gain, "{} {}", pair, remedy_of(*gain));
   }
+  MODCAL_REQUIRE(!fit.explained_at_edge(),
+                 "{} tell no f0 within 3 % of {:g} Hz: the best, {:.5g} Hz, stands at the edge of "
+                 "that; check f0 and the sample rate, and where the string hardly stands above the "
+                 "noise take a louder part of the record, or a longer one",
+                 pair, options.string.fundamental, fit.fundamental);
   MODCAL_REQUIRE(fit.explained(),
                  "{} are not those of one string with f0 within 3 % of {:g} Hz and the contact "
                  "within 2 % of L of {:g} mm: the best, with f0 = {:.5g} Hz, leaves {:.3g} % of "

@@ -64,6 +64,8 @@ bool EndRelationFit::noise_alone(std::size_t end) const {
 
 bool EndRelationFit::explained() const { return !at_edge && unexplained < kUnexplained; }
 
+bool EndRelationFit::explained_at_edge() const { return at_edge && unexplained < kUnexplained; }
+
 bool EndRelationFit::tells_fundamental() const {
   return misfit_as_stated - least_misfit > kFundamentalTold;
 }

@@ -51,6 +51,7 @@ struct EndRelationFit {
   bool at_edge = false;      ///< f₀ is farther from the one stated than it may be
   double unexplained = 0.0;  ///< share of the reactions' power below 10 f₀ that the string leaves
   bool explained() const;    ///< it is that of one string
+  bool explained_at_edge() const;  ///< it would be but for an f₀ at the edge of what is looked for
   /// Largest power of a bin below 10 f₀ over that of the noise, of either reaction.
   std::array<double, 2> peak_over_noise{};
   /// Whether no bin of that end stands above the noise by more than noise itself does.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "libinverse/waves/tuning.hpp"
@@ -93,6 +94,10 @@ std::vector<Period> periods_of(const EndResidual& residual, double sample_rate,
   return periods;
 }
 
+double power_of(const std::vector<double>& samples) {
+  return std::transform_reduce(samples.begin(), samples.end(), samples.begin(), 0.0);
+}
+
 /// What the relation of a string leaves of a record.
 struct ResidualLevel {
   double unexplained = 0.0;  ///< share of the power, without noise
@@ -121,9 +126,14 @@ ResidualLevel level_of(const EndRecord& record, const StatedString& string) {
     power += period.power;
   }
   const double noise_sum = noise * static_cast<double>(periods.size());
-  if (power > 2.0 * noise_sum) {
-    level.unexplained = std::max(error - noise_sum, 0.0) / (power - noise_sum);
-  }
+  const auto share_of = [](double left, double all, double of_noise) {
+    return all > 2.0 * of_noise ? std::max(left - of_noise, 0.0) / (all - of_noise) : 0.0;
+  };
+  // Of a stroke that is over soon the first periods hold most, and nothing wraps into them.
+  const double whole_noise = residual.noise * static_cast<double>(residual.error.size());
+  const double whole = share_of(power_of(residual.error),
+                                power_of(residual.left) + power_of(residual.right), whole_noise);
+  level.unexplained = std::min(share_of(error, power, noise_sum), whole);
   level.usual = quantile(errors, kUsual);
   const double usual_share = quantile(shares, kUsual);
   for (const Period& period : periods) {

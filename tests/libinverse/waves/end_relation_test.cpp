@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "benchmarks/truth/truth.hpp"
 #include "libinverse/waves/end_residual.hpp"
+#include "libsim/base/random.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/refusal.hpp"
 
@@ -58,6 +60,41 @@ TEST(EndRelation, OfAStringIsThatOfTheStringStated) {
     EXPECT_NEAR(fit.fundamental, 294.0, 0.004 * 294.0);
     EXPECT_NEAR(fit.contact, 0.041, 2e-3);
   }
+}
+
+// A burst in the second period and then nothing but noise that is louder below 1 kHz: the periods
+// behind it, which nothing wraps into, hold no string. B = 0: the factors of R1 and R2 are delays.
+TEST(EndRelation, OfAStrokeThatIsOverSoonIsThatOfTheWholeRecord) {
+  constexpr double rate = 44100.0, fundamental = 220.0, place = 0.12;
+  constexpr std::size_t samples = 22050;
+  const StatedString string{
+      .length = 0.5, .fundamental = fundamental, .inharmonicity = 0.0, .contact = 0.5 * place};
+  const auto burst = [](double t) {
+    const double x = (t - 1.6 / fundamental) / (0.06 / fundamental);
+    return -x * std::exp(-0.5 * x * x);
+  };
+  std::array<std::vector<double>, 2> noise;
+  std::array<std::vector<double>, 2> reactions;
+  for (std::size_t r = 0; r < 2; ++r) {
+    const double delay = 0.5 * (r == 0 ? 1.0 - place : place) / fundamental;
+    noise[r].resize(samples);
+    fill_standard_normal(StreamKey(5).with(r), noise[r]);
+    double low = 0.0;
+    for (std::size_t j = 0; j < samples; ++j) {
+      const double t = static_cast<double>(j) / rate;
+      low += 0.1 * (noise[r][j] - low);
+      reactions[r].push_back(burst(t + delay) - burst(t - delay) + 0.05 * low);
+    }
+  }
+  const EndRelationFit fit =
+      fit_end_relations({reactions[0], reactions[1], rate, {0.001, 0.001}}, string);
+  EXPECT_EQ(fit.best(), EndRelation::kString);
+  EXPECT_LT(fit.unexplained, 0.1);
+  // Not of a sign that is wrong.
+  EXPECT_GT(
+      fit_end_relations({times(-1.0, reactions[0]), reactions[1], rate, {0.001, 0.001}}, string)
+          .unexplained,
+      0.5);
 }
 
 // Of f0 half a per cent off a stroke says so, and nothing of one that is right.
