@@ -43,7 +43,7 @@ std::string failures_text(const LoadedExperiment& loaded, const StudyResult& res
   std::string text =
       fmt::format("{} of {} tasks failed:\n", result.failed_tasks, list->task_count());
   for (std::size_t i = 0; i < std::min(kShown, result.failures.size()); ++i) {
-    const FailedTasks& failed = result.failures[i];
+    const TasksOfReason& failed = result.failures[i];
     text +=
         fmt::format("  task {}{}: {}\n", fmt::join(failed.first, ", "),
                     failed.count > failed.first.size() ? fmt::format(" … ({} tasks)", failed.count)
@@ -58,7 +58,7 @@ std::string failures_text(const LoadedExperiment& loaded, const StudyResult& res
 
 nlohmann::ordered_json failures_json(const StudyResult& result) {
   auto list = nlohmann::ordered_json::array();
-  for (const FailedTasks& failed : result.failures) {
+  for (const TasksOfReason& failed : result.failures) {
     list.push_back({{"reason", failed.reason}, {"count", failed.count}, {"first", failed.first}});
   }
   return list;

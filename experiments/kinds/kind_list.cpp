@@ -20,7 +20,7 @@ bool is_shown_first(const std::string& name) {
 // Draws of one setting: tasks that differ in seeds alone.
 struct Setting {
   std::vector<std::string> values;  ///< of the axes that are no seeds
-  std::size_t n = 0, failures = 0;
+  std::size_t n = 0, failures = 0, warned = 0;
   std::map<std::string, Sample> samples;
 };
 
@@ -46,6 +46,8 @@ class RunSummary {
     Setting& setting = settings_[place->second];
     ++setting.n;
     if (!outcome.failure.empty()) ++setting.failures;
+    if (!outcome.warnings.empty()) ++setting.warned;
+    for (const std::string& text : outcome.warnings) add_reason(task, text, warned_);
     for (const auto& [name, value] : outcome.numbers) {
       if (known_names_.insert(name).second) names_.push_back(name);
       if (std::isfinite(value)) setting.samples[name].add(value);
@@ -65,6 +67,7 @@ class RunSummary {
           }
           row({.key = "n"}, setting.n);
           row({.key = "failures"}, setting.failures);
+          if (!warned_.empty()) row({.key = "warned"}, setting.warned);
           for (const std::string& name : names_) {
             row({.key = name, .unit = unit_of(name)}, known(sample_of(setting, name).median()));
           }
@@ -86,6 +89,9 @@ class RunSummary {
       }
       row.cell({.key = "failure"},
                task.outcome.failure.empty() ? report::Cell() : task.outcome.failure);
+      const std::vector<std::string>& warnings = task.outcome.warnings;
+      row.cell({.key = "warnings"},
+               warnings.empty() ? report::Cell() : fmt::format("{}", fmt::join(warnings, "; ")));
     };
     report::Table table{.id = "tasks"};
     for (const RunTask& task : tasks_) {
@@ -93,6 +99,8 @@ class RunSummary {
     }
     return report::table_csv(table);
   }
+
+  const std::vector<TasksOfReason>& warned() const { return warned_; }
 
   /// Of two axes the medians of the first numbers that differ, a map each.
   std::vector<report::Table> maps() const {
@@ -107,13 +115,14 @@ class RunSummary {
     return maps;
   }
 
-  /// The first numbers that differ, a panel each, against the first axis of numbers of one unit;
-  /// no panels where there is none.
+  /// The first numbers that differ, a panel each, against the first axis of numbers, if any.
   report::Figure figure() const {
     constexpr std::size_t kMostPanels = 6;
     report::Figure figure{.id = "against_axis",
                           .title = "Results over the axes",
-                          .caption = "Median and band from 10 % to 90 % of the draws.",
+                          .caption = tasks_.size() > settings_.size()
+                                         ? "Median and band from 10 % to 90 % of the draws."
+                                         : "One draw of each setting.",
                           .columns = 3};
     for (std::size_t axis = 0; axis < setting_axes_.size(); ++axis) {
       std::string unit;
@@ -228,15 +237,19 @@ class RunSummary {
       const Sample& sample = sample_of(settings_[s], name);
       if (sample.values.empty()) continue;
       std::vector<std::string> others = settings_[s].values;
+      for (std::size_t i = 0; i < others.size(); ++i) {
+        const std::string& path = axes_[setting_axes_[i]];
+        others[i].insert(0, path.substr(path.rfind('.') + 1) + " ");
+      }
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(axis));
       const auto [place, is_new] = known.try_emplace(others, series.size());
       if (is_new) {
         const auto color = std::min<std::size_t>(series.size() + 1, report::kColorRoles - 1);
-        series.push_back({.label = others.empty() ? "median, 10-90 %"
-                                                  : fmt::format("{}", fmt::join(others, ", ")),
-                          .style = report::SeriesStyle::kLineWithPoints,
-                          .color = static_cast<report::ColorRole>(color),
-                          .tags = tags_of(settings_[s], axis)});
+        series.push_back(
+            {.label = others.empty() ? "median" : fmt::format("{}", fmt::join(others, ", ")),
+             .style = report::SeriesStyle::kLineWithPoints,
+             .color = static_cast<report::ColorRole>(color),
+             .tags = tags_of(settings_[s], axis)});
       }
       add_band(series[place->second], x[s], Spread::of(sample));
       medians.insert(sample.median());
@@ -254,6 +267,7 @@ class RunSummary {
   std::map<std::vector<std::string>, std::size_t> setting_of_;
   std::vector<Setting> settings_;
   std::vector<RunTask> tasks_;
+  std::vector<TasksOfReason> warned_;
 };
 
 }  // namespace
@@ -265,6 +279,12 @@ StudyResult sum_up_runs(const TaskExperiment& list, const TaskOutcomes& outcomes
                                [&](std::size_t task, RunOutcome outcome, double /*seconds*/) {
                                  summary.add(task, std::move(outcome));
                                });
+  report::Table settings = summary.settings();
+  result.answer = fmt::format("{} settings, medians over their draws", settings.rows.size());
+  result.summary = fmt::format("{} of {} tasks done, {} failed; {} settings, see tasks.csv\n",
+                               outcomes.size() - result.pending_tasks, outcomes.size(),
+                               result.failed_tasks, settings.rows.size());
+  warn_of(summary.warned(), result);
   report::Figure figure = summary.figure();
   if (!figure.panels.empty()) {
     result.blocks.emplace_back(std::move(figure));
@@ -272,11 +292,6 @@ StudyResult sum_up_runs(const TaskExperiment& list, const TaskOutcomes& outcomes
     result.add(summary.maps());
   }
   result.end_first_screen();
-  report::Table settings = summary.settings();
-  result.answer = fmt::format("{} settings, medians over their draws", settings.rows.size());
-  result.summary = fmt::format("{} of {} tasks done, {} failed; {} settings, see tasks.csv\n",
-                               outcomes.size() - result.pending_tasks, outcomes.size(),
-                               result.failed_tasks, settings.rows.size());
   result.blocks.emplace_back(std::move(settings));
   result.files.emplace_back("tasks.csv", summary.tasks_csv());
   return result;

@@ -44,6 +44,7 @@ struct RunOutcome {
   /// "levels.f_c.std": table, first cell of the row (where there are several rows), column.
   std::vector<std::pair<std::string, double>> numbers;
   std::vector<std::pair<std::string, std::string>> units;  ///< of those that have one
+  std::vector<std::string> warnings;                       ///< of the run
   void visit(ResultVisitor& visitor);
 };
 

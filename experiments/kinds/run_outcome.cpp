@@ -49,10 +49,11 @@ void RunOutcome::visit(ResultVisitor& visitor) {
   if (!failure.empty()) return;
   visitor({.key = "numbers"}, numbers);
   visitor({.key = "units", .optional = true}, units);
+  visitor({.key = "warnings", .optional = true}, warnings);
 }
 
 RunOutcome run_outcome(const StudyResult& result) {
-  RunOutcome outcome;
+  RunOutcome outcome{.warnings = result.warnings};
   if (result.status == report::Status::kFailed) {
     outcome.failure = !result.answer.empty()    ? result.answer
                       : !result.summary.empty() ? result.summary

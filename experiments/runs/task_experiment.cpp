@@ -1,5 +1,9 @@
 #include "experiments/runs/task_experiment.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 namespace modcal {
 namespace {
 
@@ -129,18 +133,29 @@ StudyResult TaskExperiment::run(const StudyContext& context) const {
   return sum_up(run_tasks(*this, context, nullptr, Shard{}), context);
 }
 
-void add_failure(std::size_t task, const std::string& reason, StudyResult& result) {
+void add_reason(std::size_t task, const std::string& reason, std::vector<TasksOfReason>& reasons) {
   constexpr std::size_t kNamed = 5;
-  ++result.failed_tasks;
   const std::string text = without_numbers(reason);
-  auto known = std::find_if(
-      result.failures.begin(), result.failures.end(),
-      [&text](const FailedTasks& failed) { return without_numbers(failed.reason) == text; });
-  if (known == result.failures.end()) {
-    known = result.failures.insert(known, {.reason = reason, .count = 0, .first = {}});
+  auto known = std::ranges::find_if(
+      reasons, [&text](const TasksOfReason& of) { return without_numbers(of.reason) == text; });
+  if (known == reasons.end()) {
+    known = reasons.insert(known, {.reason = reason, .count = 0, .first = {}});
   }
   ++known->count;
   if (known->first.size() < kNamed) known->first.push_back(task);
+}
+
+void add_failure(std::size_t task, const std::string& reason, StudyResult& result) {
+  ++result.failed_tasks;
+  add_reason(task, reason, result.failures);
+}
+
+void warn_of(const std::vector<TasksOfReason>& reasons, StudyResult& result) {
+  for (const TasksOfReason& of : reasons) {
+    result.warn(fmt::format("{} {} ({}{}): {}", of.count, of.count == 1 ? "task" : "tasks",
+                            fmt::join(of.first, ", "),
+                            of.count > of.first.size() ? " and others" : "", of.reason));
+  }
 }
 
 }  // namespace modcal

@@ -128,6 +128,12 @@ auto attempted(const Work& work) -> decltype(work()) {
   }
 }
 
+/// Counts the task among those of its reason.
+void add_reason(std::size_t task, const std::string& reason, std::vector<TasksOfReason>& reasons);
+
+/// A warning of each reason: how many tasks, the first of them, and what the first was warned of.
+void warn_of(const std::vector<TasksOfReason>& reasons, StudyResult& result);
+
 /// Counts the failed task among those of its reason.
 void add_failure(std::size_t task, const std::string& reason, StudyResult& result);
 

@@ -36,8 +36,8 @@ struct SignalFile {
   std::vector<std::string> notes = {};  ///< what a reader of the signals has to know
 };
 
-/// Tasks of a list that failed for the same reason, up to its numbers.
-struct FailedTasks {
+/// Tasks of a list that failed, or were warned of, for the same reason, up to its numbers.
+struct TasksOfReason {
   std::string reason;  ///< of the first
   std::size_t count = 0;
   std::vector<std::size_t> first;  ///< a few of them
@@ -70,7 +70,7 @@ struct StudyResult {
   std::string summary;  ///< for standard output
   report::Status status = report::Status::kOk;
   std::size_t failed_tasks = 0;
-  std::vector<FailedTasks> failures;
+  std::vector<TasksOfReason> failures;
   std::size_t pending_tasks = 0;  ///< not run yet: the figures stand on the others
   /// Accepted figures that were missed, one sentence each.
   std::vector<std::string> missed;
