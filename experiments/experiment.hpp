@@ -13,6 +13,8 @@ struct Finding {
   std::string text;
   bool is_error = true;
   bool is_idle = false;  ///< what it names does nothing: no mistake where another task reads it
+  /// Of a task of a list, the axis that it concerns and its value there, as written; else empty.
+  std::string axis = {}, value = {};
 };
 
 /// The simulations of a run, by one of them.

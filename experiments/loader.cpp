@@ -28,6 +28,29 @@ SourcePosition position_of_path(const YamlNode& root, std::string_view path) {
   return position;
 }
 
+// Where a list of tasks has a value of an axis; null: it is written elsewhere.
+const YamlNode* value_of_axis(const YamlNode& node, const std::string& axis,
+                              const std::string& value) {
+  for (const YamlNode::Member& member : node.members) {
+    const YamlNode& values = member.value;
+    if (member.key != axis) {
+      if (const YamlNode* found = value_of_axis(values, axis, value)) return found;
+      continue;
+    }
+    for (const YamlNode& item : values.items) {
+      if (item.text == value) return &item;
+    }
+  }
+  return nullptr;
+}
+
+SourcePosition position_of_finding(const YamlNode& root, const Finding& finding) {
+  const YamlNode* sweep = finding.axis.empty() ? nullptr : root.find("sweep");
+  const YamlNode* value =
+      sweep != nullptr ? value_of_axis(*sweep, finding.axis, finding.value) : nullptr;
+  return value != nullptr ? value->position : position_of_path(root, finding.path);
+}
+
 bool choose_kind(LoadedExperiment& loaded) {
   const YamlNode* kind = loaded.document.root.find("kind");
   std::vector<std::string> names;
@@ -191,7 +214,7 @@ void make_and_lint(LoadedExperiment& loaded, const Means& means) {
     if (!had_errors && !check_memory(*experiment, means, loaded)) return;
     Places mistakes(loaded.mistakes);
     for (const Finding& finding : experiment->lint()) {
-      const SourcePosition position = position_of_path(root, finding.path);
+      const SourcePosition position = position_of_finding(root, finding);
       const YamlNode* node = node_at(root, finding.path);
       if (mistakes.said(finding.text)) continue;  // a simulator refuses what its scene does
       // Of a text that cannot be read on, what it lacks may follow.
@@ -254,7 +277,7 @@ void check_records(LoadedExperiment& loaded) {
   if (!loaded.experiment) return;
   for (const Finding& finding : loaded.experiment->lint_records(loaded.document.folder())) {
     loaded.mistakes.push_back(
-        {position_of_path(loaded.document.root, finding.path), finding.text, !finding.is_error});
+        {position_of_finding(loaded.document.root, finding), finding.text, !finding.is_error});
   }
 }
 

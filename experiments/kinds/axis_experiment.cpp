@@ -16,6 +16,26 @@ std::vector<Finding> distinct_findings(std::vector<Finding> findings) {
   return findings;
 }
 
+bool is_read_with_record(const std::string& path) {
+  return path.starts_with("record.") || path.starts_with("string.") || path.starts_with("bow.");
+}
+
+void place_on_axes(const std::vector<std::string>& paths, const std::vector<std::string>& values,
+                   std::vector<Finding>& findings) {
+  const auto holds = [](const std::string& section, const std::string& path) {
+    return path == section || path.starts_with(section + ".");
+  };
+  for (Finding& finding : findings) {
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      if (finding.path.empty()) continue;
+      if (!holds(paths[i], finding.path) && !holds(finding.path, paths[i])) continue;
+      finding.axis = paths[i];
+      finding.value = values[i];
+      if (paths[i] == finding.path) break;
+    }
+  }
+}
+
 std::vector<Finding> findings_of_list(const std::vector<std::vector<Finding>>& of_tasks) {
   std::map<std::string, std::size_t> idle_tasks;
   for (const std::vector<Finding>& findings : of_tasks) {

@@ -35,6 +35,7 @@ class AxisList final : public SweepSlot {
       }
     }
     settings_.clear();
+    first_cell_.clear();
     known_settings_.clear();
     cells_.assign(cells.values.size(), Cell{});
   }
@@ -48,6 +49,7 @@ class AxisList final : public SweepSlot {
     if (is_new) {
       seed_of(options) = cells_[index].seed;
       settings_.push_back(std::move(options));
+      first_cell_.push_back(index);
     }
     cells_[index].settings = place->second;
   }
@@ -70,6 +72,8 @@ class AxisList final : public SweepSlot {
   }
   /// The options of all cells, those that differ in their seed alone once.
   const std::vector<Options>& all() const { return settings_; }
+  /// The first cell that has these options of all().
+  std::size_t first_cell(std::size_t settings) const { return first_cell_[settings]; }
   /// Place of a cell's options in all().
   std::size_t settings_of(std::size_t cell) const { return cells_[cell].settings; }
 
@@ -90,6 +94,7 @@ class AxisList final : public SweepSlot {
   std::vector<std::string> values_;      // distinct ones
   std::vector<std::uint32_t> value_of_;  // places in them, cell by cell
   std::vector<Options> settings_;
+  std::vector<std::size_t> first_cell_;  // of each
   std::unordered_map<std::string, std::uint32_t> known_settings_;
   std::vector<Cell> cells_;
 };
@@ -99,8 +104,14 @@ inline bool is_seed_axis(const std::string& path) { return ("." + path).ends_wit
 
 // Lists of tasks over the options of a kind of experiment: an axis list, whatever sums it up.
 
+/// Whether a record is judged by the value of this option.
+bool is_read_with_record(const std::string& path);
+
 /// Findings, each once.
 std::vector<Finding> distinct_findings(std::vector<Finding> findings);
+/// Findings of a cell with its values on the axes that they concern.
+void place_on_axes(const std::vector<std::string>& paths, const std::vector<std::string>& values,
+                   std::vector<Finding>& findings);
 /// Those of the tasks of a list, each once; what is idle in some tasks and read in others is none.
 std::vector<Finding> findings_of_list(const std::vector<std::vector<Finding>>& of_tasks);
 
@@ -172,33 +183,35 @@ class AxisExperiment : public TaskExperiment {
 
   std::vector<Finding> lint() const override {
     std::vector<std::vector<Finding>> findings;
-    for (const Cell& cell : options_.cells.all()) {
+    for (std::size_t i = 0; i < options_.cells.all().size(); ++i) {
+      const Cell& cell = options_.cells.all()[i];
       findings.push_back(cell.lint());
       std::erase_if(findings.back(),
                     [&](const Finding& finding) { return is_excused(cell, finding); });
+      const std::vector<std::string> values = options_.cells.values(options_.cells.first_cell(i));
+      place_on_axes(options_.cells.paths(), values, findings.back());
     }
     return findings_of_list(findings);
   }
-  /// Of every file, and of the first few parts of a file that axes make of it.
+  /// Of every file, and of the first few parts and strings that axes make of it.
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const override {
     constexpr std::size_t kMostParts = 12;
     std::vector<Finding> findings;
     std::map<std::vector<std::string>, std::set<std::vector<std::string>>> read;
     const std::vector<std::string>& paths = options_.cells.paths();
-    std::set<std::size_t> settings;
-    for (std::size_t task = 0; task < options_.cells.size(); ++task) {
-      if (!settings.insert(options_.cells.settings_of(task)).second) continue;
-      const Cell& cell = options_.cells.all()[options_.cells.settings_of(task)];
-      const std::vector<std::string> values = options_.cells.values(task);
+    for (std::size_t i = 0; i < options_.cells.all().size(); ++i) {
+      const Cell& cell = options_.cells.all()[i];
+      const std::vector<std::string> values = options_.cells.values(options_.cells.first_cell(i));
       std::vector<std::string> names, part;
       for (const FileRead& file : files_read_by(cell)) names.push_back(file.name);
-      for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (paths[i].starts_with("record.")) part.push_back(values[i]);
+      for (std::size_t axis = 0; axis < paths.size(); ++axis) {
+        if (is_read_with_record(paths[axis])) part.push_back(values[axis]);
       }
       std::set<std::vector<std::string>>& parts = read[names];
-      if (parts.size() < kMostParts && parts.insert(part).second) {
-        append(findings, record_findings(cell, folder));
-      }
+      if (parts.size() >= kMostParts || !parts.insert(part).second) continue;
+      std::vector<Finding> own = record_findings(cell, folder);
+      place_on_axes(paths, values, own);
+      append(findings, std::move(own));
     }
     return distinct_findings(std::move(findings));
   }

@@ -69,6 +69,20 @@ TEST(KindList, SimulatesOverAnAxis) {
   EXPECT_THAT(result.files[0].second, HasSubstr("levels.R1.std"));
 }
 
+TEST(KindList, TellsWhatItsRunsWereWarnedOf) {
+  const LoadedExperiment loaded = loaded_from(kSimulate);
+  TaskOutcomes outcomes(4);
+  for (std::size_t task = 0; task < 4; ++task) {
+    StudyResult run;
+    if (task % 2 == 1) run.warn(fmt::format("the reactions contradict each other {} times", task));
+    outcomes.put(task, {.outcome = report::json_line(run_outcome(run)), .seconds = 0.1});
+  }
+  const StudyResult result = sum_up_runs(list_of(loaded), outcomes);
+  EXPECT_THAT(result.warnings,
+              ElementsAre("2 tasks (1, 3): the reactions contradict each other 1 times"));
+  EXPECT_THAT(result.files.at(0).second, HasSubstr("the reactions contradict each other 3 times"));
+}
+
 TEST(KindList, IdentifiesOverAnAxis) {
   const LoadedExperiment loaded = loaded_from(kIdentify);
   const TaskExperiment& list = list_of(loaded);
@@ -101,9 +115,11 @@ sweep:
   const StudyResult result = list.run({.work = work, .folder = ".", .command = {}, .stop = {}});
   ASSERT_GT(result.first_screen, 0u);
   ASSERT_LT(result.first_screen, result.blocks.size());
+  std::size_t maps = 0;
   for (std::size_t i = 0; i < result.first_screen; ++i) {
     const auto* map = std::get_if<report::Table>(&result.blocks[i]);
-    ASSERT_NE(map, nullptr);
+    if (map == nullptr) continue;  // what the runs were warned of
+    ++maps;
     ASSERT_EQ(map->rows.size(), 3u);
     ASSERT_EQ(map->columns.size(), 3u);
     EXPECT_EQ(map->columns[2].key, "evidence");
@@ -118,6 +134,8 @@ sweep:
     EXPECT_EQ(lightest, 0.0) << map->title;
     EXPECT_EQ(darkest, 1.0) << map->title;
   }
+  EXPECT_EQ(result.first_screen - maps, result.warnings.size());
+  EXPECT_GT(maps, 1u);
 }
 
 TEST(KindList, ReplaysATaskAsTheExperimentThatItIs) {
@@ -185,6 +203,16 @@ TEST(KindList, FindsTheMistakesOfItsCells) {
   const LoadedExperiment loaded = loaded_from(wrong);
   EXPECT_EQ(loaded.experiment, nullptr);
   EXPECT_THAT(format_mistakes(loaded.document, loaded.mistakes), HasSubstr("displacment"));
+}
+
+TEST(KindList, ShowsAMistakeAtTheValueOfTheAxis) {
+  std::string wrong = kSimulate;
+  wrong.replace(wrong.find("[1 mm, 2 mm]"), 12,
+                "[1 mm, 2 mm]\n    scene.initial.position: [43 mm, 400 mm]");
+  const LoadedExperiment loaded = loaded_from(wrong);
+  ASSERT_EQ(loaded.mistakes.size(), 1u) << format_mistakes(loaded.document, loaded.mistakes);
+  const std::size_t at = wrong.find("400 mm"), line = wrong.rfind('\n', at);
+  EXPECT_EQ(loaded.mistakes[0].position.column, at - line);
 }
 
 TEST(RunOutcome, HasTheNumbersOfTheTables) {
