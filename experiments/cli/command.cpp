@@ -19,6 +19,8 @@
 #include "experiments/report/encoding.hpp"
 #include "libsim/base/files.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/base/words.hpp"
+#include "libsim/records/formats.hpp"
 
 namespace modcal {
 namespace {
@@ -160,9 +162,26 @@ void declare_threads(CLI::App& command, int& threads, const char* meaning) {
   command.add_option("--threads", threads, meaning)->check(CLI::Range(1, 4096));
 }
 
+void require_no_record(const std::filesystem::path& file) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(file, unreadable)) return;
+  const std::string extension = lower_case(file.extension().string());
+  // A text may be either.
+  if (extension == ".txt" && content_of_file(file).find("kind:") != std::string::npos) return;
+  for (const RecordFormat& format : record_formats()) {
+    MODCAL_REQUIRE(std::ranges::count(format.extensions, extension) == 0,
+                   "{}: this looks like a record ({}) and not like an experiment: see what it "
+                   "holds with `modcal inspect {}`, and write an experiment on it with `modcal new "
+                   "calibrate {}`, or `modcal new invert ...`",
+                   file.string(), format.meaning, shell_word(file.string()),
+                   shell_word(file.string()));
+  }
+}
+
 std::optional<LoadedExperiment> load_and_print_mistakes(const std::filesystem::path& file,
                                                         const std::vector<std::string>& assignments,
                                                         const Means& means) {
+  require_no_record(file);
   std::optional<LoadedExperiment> loaded = load_experiment(file, assignments, means);
   complain(complaints_of(loaded->document, loaded->mistakes));
   if (!loaded->has_errors()) return loaded;

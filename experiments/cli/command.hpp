@@ -146,11 +146,17 @@ std::string hertz_of(const std::string& text);
 /// --sample-rate [Hz] of a file that has none.
 CLI::Option& declare_rate(CLI::App& command, double& rate);
 
+/// What a reader of records says, with that option in the place of the key of a file.
+std::string with_rate_option(std::string text);
+
 /// The text where it is a size such as 8GB. Throws CLI::ValidationError.
 std::string require_size(std::string text);
 
 /// --threads with its range.
 void declare_threads(CLI::App& command, int& threads, const char* meaning);
+
+/// Throws InvalidInput where the name of a file is one of recorded files.
+void require_no_record(const std::filesystem::path& file);
 
 /// The experiment, after its mistakes were printed; none where an error is among them.
 std::optional<LoadedExperiment> load_and_print_mistakes(

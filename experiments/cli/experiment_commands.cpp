@@ -60,6 +60,7 @@ ExitCode run(const FileArguments& arguments) {
 void declare_file(CLI::App& command, FileArguments& arguments) { arguments.declare_file(command); }
 
 ExitCode validate(const FileArguments& arguments) {
+  require_no_record(arguments.file);
   LoadedExperiment loaded =
       load_experiment(arguments.file, arguments.assignments, arguments.means());
   check_records(loaded);
@@ -137,7 +138,7 @@ ExitCode reproduce(const ReproduceArguments& arguments) {
   const RunSettings settings{
       .out = out,
       .threads = arguments.threads,
-      .command = fmt::format("modcal reproduce {} --out {}", arguments.target, out),
+      .command = fmt::format("modcal reproduce {} --out {}", arguments.target, shell_word(out)),
       .title = "Debut, Delaune and Antunes (2010): figures and table"};
   return experiments.size() == 1 ? run_one(experiments[0], settings)
                                  : run_together(experiments, settings);

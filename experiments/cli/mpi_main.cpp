@@ -33,6 +33,7 @@ class MpiSession {
 };
 
 ExitCode run_shard(const ExperimentArguments& arguments, const Shard& shard) {
+  require_no_record(arguments.file);
   const LoadedExperiment loaded =
       load_experiment(arguments.file, arguments.assignments, arguments.means());
   if (shard.index == 1) {

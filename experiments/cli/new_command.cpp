@@ -1,5 +1,6 @@
 // new: an experiment file to start from.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -198,6 +199,20 @@ std::string text_for(const NewArguments& arguments, const ToldString& told,
   return text;
 }
 
+void require_both_ends(const InspectionReport& report, const std::string& file) {
+  const RecordOptions& record = report.record;
+  if (record.has_left && record.has_right) return;
+  std::vector<std::string> names;
+  for (const ChannelInspection& channel : report.channels) names.push_back(channel.name);
+  const bool any = record.has_left || record.has_right;
+  throw_invalid_input(
+      "{}: {} of its channels ({}) is told to be a reaction{}: which string it is takes both; name "
+      "them R1 and R2 in the file, or state the experiment by hand as `modcal inspect {}` shows",
+      file, any ? "only one" : "none", fmt::join(names, ", "),
+      any ? fmt::format(", {}", record.has_left ? record.left.channel : record.right.channel) : "",
+      shell_word(file));
+}
+
 std::string file_for_record(const NewArguments& arguments) {
   MODCAL_REQUIRE(
       arguments.kind == "invert" || arguments.kind == "calibrate",
@@ -206,14 +221,11 @@ std::string file_for_record(const NewArguments& arguments) {
       arguments.kind, shell_word(arguments.record));
   const InspectionReport report =
       inspect(arguments.record, {.sample_rate = arguments.sample_rate, .memory = machine_memory()});
-  MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());
+  if (report.problem_count > 0) throw InvalidInput(with_rate_option(report.problems.front()));
   RecordOptions record = report.record;
   // Of a large file inspect reads the head alone; what follows reads all of it.
   require_memory(record.file, record.format, machine_memory());
-  MODCAL_REQUIRE(record.has_left && record.has_right,
-                 "{} has one reaction: which string it is takes both; state it by hand as "
-                 "`modcal inspect` shows",
-                 arguments.record);
+  require_both_ends(report, arguments.record);
   ToldString told = told_by(record);
   // One sensor may read with the other sign.
   RecordOptions other = record;

@@ -14,6 +14,12 @@ CLI::Option& declare_rate(CLI::App& command, double& rate) {
               ->transform(hertz_of);
 }
 
+std::string with_rate_option(std::string text) {
+  constexpr std::string_view kKey = "state sample_rate";
+  const std::size_t at = text.find(kKey);
+  return at == std::string::npos ? text : text.replace(at, kKey.size(), "state --sample-rate");
+}
+
 namespace {
 
 std::string format_words() { return fmt::format("{}", fmt::join(record_format_choices(), ", ")); }
@@ -68,12 +74,19 @@ ExitCode convert_functions(const ConvertArguments& arguments) {
   return ExitCode::kOk;
 }
 
+Recording read_all(const ConvertArguments& arguments) {
+  try {
+    return read_record(arguments.from, arguments.from_format,
+                       {.sample_rate = arguments.sample_rate, .memory = machine_memory()});
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(with_rate_option(error.what()), error.place());
+  }
+}
+
 ExitCode convert_record(const ConvertArguments& arguments, const RecordFormat& target) {
   MODCAL_REQUIRE(target.write != nullptr, "{}: files of the format {} are read only", arguments.to,
                  target.name);
-  Recording recording =
-      read_record(arguments.from, arguments.from_format,
-                  {.sample_rate = arguments.sample_rate, .memory = machine_memory()});
+  Recording recording = read_all(arguments);
   std::vector<Signal> signals;
   for (RecordedChannel& channel : recording.channels) {
     signals.push_back(signal_of(channel, recording.sample_rate));

@@ -97,6 +97,17 @@ void collect_swept_seeds(const YamlNode& root, nlohmann::ordered_json& seeds) {
   }
 }
 
+// Whether somebody makes the results of the folder. Shared, so that two who ask do not see each
+// other.
+bool is_locked(const std::filesystem::path& folder) {
+  try {
+    const FolderLock lock(folder, {.index = 1, .count = 2});
+    return false;
+  } catch (const InvalidInput&) {
+    return true;
+  }
+}
+
 }  // namespace
 
 std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem::path& folder) {
@@ -114,6 +125,10 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
   const nlohmann::json provenance = read_provenance(out_);
   folder_ = provenance["folder"].get<std::string>();
   command_ = provenance["command"].get<std::string>();
+  const auto directory = provenance.find("directory");
+  if (directory != provenance.end() && directory->is_string()) {
+    directory_ = directory->get<std::string>();
+  }
   // What was done elsewhere may have needed more than there is here.
   constexpr double kAny = std::numeric_limits<double>::infinity();
   loaded_ = load_experiment(out_ / kResolvedFile, {}, {.memory = kAny});
@@ -121,10 +136,7 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
                  (out_ / kResolvedFile).string(),
                  format_mistakes(loaded_.document, loaded_.mistakes));
   list_ = dynamic_cast<const TaskExperiment*>(loaded_.experiment.get());
-  MODCAL_REQUIRE(list_ != nullptr,
-                 "{0} holds a run of kind {1}, which is no list of tasks: its answer stands in "
-                 "{0}/answer.json, its report in {0}/report.html",
-                 out_.string(), loaded_.kind);
+  if (list_ == nullptr) refuse_single();
   finished_.emplace(out_, provenance["program"].get<std::string>());
   outcomes_.emplace(stored_outcomes(*list_, *finished_, folder_));
 }
@@ -136,7 +148,39 @@ void StoredRun::require_some_done() const {
   throw_invalid_input(
       "{}: none of the {} tasks is done, by this program and with its files as they are now; run:\n"
       "  {}",
-      out_.string(), tasks(), command_);
+      out_.string(), tasks(), command_from_here());
+}
+
+std::string StoredRun::command_from_here() const {
+  std::error_code ignored;
+  // Of a folder that was moved with all around it the paths are what they were.
+  const bool is_there = std::filesystem::is_directory(directory_, ignored);
+  if (!is_there || std::filesystem::equivalent(directory_, ".", ignored)) return command_;
+  return fmt::format("cd {} && {}", shell_word(directory_.string()), command_);
+}
+
+RunSettings StoredRun::settings(std::filesystem::path out) const {
+  return {.out = std::move(out), .command = command_, .folder = folder_, .directory = directory_};
+}
+
+void StoredRun::refuse_single() const {
+  const bool running = is_locked(out_);
+  const std::string what = fmt::format("{} holds a run of kind {}, which is no list of tasks",
+                                       out_.string(), loaded_.kind);
+  if (std::filesystem::exists(out_ / kAnswerFile) &&
+      std::filesystem::exists(out_ / report::kPageFile)) {
+    // No place at the begin: the sentence goes on behind the colon.
+    throw InvalidInput(fmt::format(
+        "{}: its answer stands in {}, its report in {}{}", what, (out_ / kAnswerFile).string(),
+        (out_ / report::kPageFile).string(), running ? "; another run works there now" : ""));
+  }
+  MODCAL_REQUIRE(!running,
+                 "{0} and works there now: its answer will stand in {1}, its report in {2}", what,
+                 (out_ / kAnswerFile).string(), (out_ / report::kPageFile).string());
+  throw_invalid_input(
+      "{} and is not finished: it was stopped, or failed, and has left no answer; run it again "
+      "with:\n  {}",
+      what, command_from_here());
 }
 
 nlohmann::ordered_json seeds_json(const LoadedExperiment& loaded) {

@@ -114,8 +114,6 @@ PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context,
     const std::string key = store.finished().key_of(list.fingerprint(task, context.folder));
     if (!store.finished().find(key).is_known()) pending.push_back(task);
   }
-  MODCAL_REQUIRE(!pending.empty(), "all {} tasks are done: nothing is left to share out",
-                 list.task_count());
   PilotRun pilot;
   const std::size_t count = std::min(kMost, pending.size());
   double seconds = 0.0;
@@ -131,7 +129,7 @@ PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context,
     ++pilot.run;
   }
   pilot.pending = pending.size() - pilot.run;
-  pilot.seconds_per_task = seconds / static_cast<double>(pilot.run);
+  if (pilot.run > 0) pilot.seconds_per_task = seconds / static_cast<double>(pilot.run);
   return pilot;
 }
 
@@ -148,9 +146,14 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) 
   const FolderLock working(out.path(), Shard{});
   begin_run(loaded, settings, out);
   SharedWork work;
-  return with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
-    return run_some_tasks(*list, context, store);
-  });
+  const PilotRun pilot = with_context(
+      loaded, folder, settings.command, work,
+      [&](const StudyContext& context) { return run_some_tasks(*list, context, store); });
+  MODCAL_REQUIRE(
+      pilot.pending > 0,
+      "all {} tasks are done: nothing is left to share out; report with:\n  modcal report {}",
+      list->task_count(), shell_word(settings.out.string()));
+  return pilot;
 }
 
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
@@ -201,7 +204,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   add_to_json("tasks", list->task_count());
   say("shard {}: {} of {} tasks of the whole list are done; report with:\n  modcal report {}\n",
       settings.shard.text(), list->task_count() - result.pending_tasks, list->task_count(),
-      settings.out.string());
+      shell_word(settings.out.string()));
   print_failures(loaded, result, settings);
   return result.failed_tasks > 0 ? ExitCode::kSomeTasksFailed : ExitCode::kOk;
 }
@@ -223,7 +226,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   for (const LoadedExperiment& loaded : experiments) {
     if (interrupted()) say_interrupted(settings, false);
     const std::string name = stem_of(loaded.document.file);
-    const std::string command = fmt::format("modcal run {}", loaded.document.file);
+    const std::string command = fmt::format("modcal run {}", shell_word(loaded.document.file));
     StudyResult result;
     try {
       result = with_context(

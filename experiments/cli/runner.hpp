@@ -20,6 +20,8 @@ struct RunSettings {
   Shard shard;        ///< part of the task list to run
   /// Where relative paths of the experiment start; empty: the folder of its file.
   std::filesystem::path folder;
+  /// Where relative paths of the command start; empty: here.
+  std::filesystem::path directory;
 };
 
 /// One experiment, whose results stand in the folder itself: resolved.yaml, provenance.json, tables
@@ -53,6 +55,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
 // What every folder of results holds.
 inline constexpr const char* kProvenanceFile = "provenance.json";
 inline constexpr const char* kResolvedFile = "resolved.yaml";
+inline constexpr const char* kAnswerFile = "answer.json";
 inline constexpr const char* kDatabaseFile = "results.sqlite";
 inline constexpr const char* kSlurmFolder = "slurm";
 /// Below it, the scripts that `submit` writes.
@@ -90,6 +93,10 @@ class StoredRun {
   const std::filesystem::path& folder() const { return folder_; }
   /// The command that made the run, and makes it go on.
   const std::string& command() const { return command_; }
+  /// The command as it works from the working directory.
+  std::string command_from_here() const;
+  /// For results of the same command in `out`.
+  RunSettings settings(std::filesystem::path out) const;
   /// What was finished when the folder was read, by task.
   const TaskOutcomes& outcomes() const { return *outcomes_; }
   std::size_t tasks() const { return outcomes_->size(); }
@@ -98,11 +105,15 @@ class StoredRun {
   const std::vector<JournalDamage>& damages() const { return finished_->damages(); }
 
  private:
+  /// Of a run that is no list: where its answer stands, or that there is none.
+  [[noreturn]] void refuse_single() const;
+
   std::filesystem::path out_;
   LoadedExperiment loaded_;
   const TaskExperiment* list_ = nullptr;
   std::filesystem::path folder_;
   std::string command_;
+  std::filesystem::path directory_;
   std::optional<FinishedTasks> finished_;
   std::optional<TaskOutcomes> outcomes_;
 };

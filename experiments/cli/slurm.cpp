@@ -72,9 +72,9 @@ ExitCode submit_to_slurm(const SubmitArguments& arguments) {
   if (!loaded) return ExitCode::kInvalidInput;
   const std::filesystem::path out = std::filesystem::absolute(arguments.folder());
   const auto threads = static_cast<std::size_t>(std::max(1, arguments.threads));
-  const RunSettings settings{
-      .out = out,
-      .command = fmt::format("modcal run {} --out {}", file_words(arguments), out.string())};
+  const RunSettings settings{.out = out,
+                             .command = fmt::format("modcal run {} --out {}", file_words(arguments),
+                                                    shell_word(out.string()))};
   OutputDirectory(out).require_own({kSlurmScripts.begin(), kSlurmScripts.end()});
   const PilotRun pilot = run_pilot(*loaded, settings);
   const SlurmBundles bundles = slurm_bundles(pilot.pending, pilot.seconds_per_task, threads,

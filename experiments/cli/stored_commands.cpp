@@ -76,7 +76,7 @@ ExitCode status(const FolderArguments& arguments) {
                 {"damaged_lines", run.damages().size()},
                 {"median_task_seconds", counts.median_seconds},
                 {"left_core_seconds", counts.left_seconds()},
-                {"command", run.command()}});
+                {"command", run.command_from_here()}});
     return ExitCode::kOk;
   }
   say("{}: {}\n{} of {} tasks done, {} failed, {} to do\n", run.loaded().kind, run.loaded().title,
@@ -87,7 +87,7 @@ ExitCode status(const FolderArguments& arguments) {
     if (counts.pending() > 0) say("; about {:.3g} core-seconds to go", counts.left_seconds());
     say("\n");
   }
-  if (counts.pending() > 0 && !running) say("go on with:\n  {}\n", run.command());
+  if (counts.pending() > 0 && !running) say("go on with:\n  {}\n", run.command_from_here());
   return ExitCode::kOk;
 }
 
@@ -129,10 +129,6 @@ ExitCode merge(const FolderArguments& arguments) {
   return ExitCode::kOk;
 }
 
-RunSettings settings_of(const StoredRun& run, std::string out) {
-  return {.out = std::move(out), .command = run.command(), .folder = run.folder()};
-}
-
 StudyContext context_of(const StoredRun& run, SharedWork& work, std::string command) {
   return {.work = work, .folder = run.folder(), .command = std::move(command)};
 }
@@ -150,7 +146,7 @@ ExitCode replay_task(const FolderArguments& arguments) {
   }
   add_to_json("axes", cell);
   SharedWork work(interrupt_token());
-  const std::string command = fmt::format("modcal replay {} {}", out, task);
+  const std::string command = fmt::format("modcal replay {} {}", shell_word(out), task);
   StudyContext context = context_of(run, work, command);
   std::optional<Progress> progress(std::in_place, fmt::format("task {}", task), Progress::Of::kOne);
   context.progress = [&progress](double share) { progress->report(share); };
@@ -158,8 +154,9 @@ ExitCode replay_task(const FolderArguments& arguments) {
   progress.reset();
   const std::filesystem::path folder =
       std::filesystem::path(out) / "replay" / fmt::format("task-{}", task);
-  RunSettings settings = settings_of(run, folder.string());
+  RunSettings settings = run.settings(folder.string());
   settings.command = command;
+  settings.directory.clear();
   return present(run.loaded(), result, settings, 0.0);
 }
 
@@ -281,7 +278,7 @@ ExitCode report_stored_run(const std::string& out) {
   run.require_some_done();
   const StudyResult result =
       run.list().sum_up(run.outcomes(), context_of(run, work, run.command()));
-  return present(run.loaded(), result, settings_of(run, out), 0.0);
+  return present(run.loaded(), result, run.settings(out), 0.0);
 }
 
 void add_stored_commands(CLI::App& app, const Chosen& chosen) {

@@ -146,7 +146,7 @@ void add_answer(const LoadedExperiment& loaded, StudyResult& result) {
   answer["failed_tasks"] = result.failed_tasks;
   answer["pending_tasks"] = result.pending_tasks;
   answer["summary"] = result.summary;
-  result.files.emplace_back("answer.json", report::json_file(answer));
+  result.files.emplace_back(kAnswerFile, report::json_file(answer));
 }
 
 void record_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out) {
@@ -156,6 +156,11 @@ void record_run(const LoadedExperiment& loaded, const RunSettings& settings, Out
   MODCAL_REQUIRE(first_not_utf8(absolute) == std::string::npos,
                  "the folder {} has a name that is not UTF-8 text: rename it", absolute);
   provenance["folder"] = absolute;
+  std::error_code ignored;
+  const std::string directory =
+      (settings.directory.empty() ? std::filesystem::current_path(ignored) : settings.directory)
+          .string();
+  if (first_not_utf8(directory) == std::string::npos) provenance["directory"] = directory;
   provenance["seeds"] = seeds_json(loaded);
   out.write_provenance(std::move(provenance));
   out.write_text(kResolvedFile, resolved_text(loaded, folder));
@@ -203,9 +208,8 @@ void print_failures(const LoadedExperiment& loaded, const StudyResult& result,
                     const RunSettings& settings) {
   const std::string failures = failures_text(loaded, result);
   if (answer_style().json || failures.empty()) return;
-  say_text(failures +
-           fmt::format("one of them again, with all that is drawn: modcal replay {} {}\n",
-                       shell_word(settings.out.string()), result.failures[0].first[0]));
+  say_text(failures + fmt::format("one of them again: modcal replay {} {}\n",
+                                  shell_word(settings.out.string()), result.failures[0].first[0]));
 }
 
 ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSettings settings,

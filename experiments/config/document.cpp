@@ -141,8 +141,10 @@ std::filesystem::path YamlDocument::folder() const {
 
 YamlDocument parse_yaml(const std::string& source, std::string file) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  const std::string text =
+  std::string text =
       source.starts_with(kByteOrderMark) ? source.substr(kByteOrderMark.size()) : source;
+  // Lines of an old Macintosh.
+  if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
   YamlDocument document;
   document.file = std::move(file);
   document.lines = split_lines(text);
@@ -211,9 +213,13 @@ void apply_assignment(YamlDocument& document, std::string_view assignment, std::
   const SourcePosition start{1, 1, fmt::format("--set {}", number)};
   document.arguments.emplace_back(start.origin, assignment);
   const std::size_t equals = assignment.find('=');
-  if (equals == std::string_view::npos || equals == 0 ||
-      assignment.find_first_not_of(' ', equals + 1) == std::string_view::npos) {
+  if (equals == std::string_view::npos || equals == 0) {
     return refuse(document, start, fmt::format("\"{}\" is not key.path=value", assignment));
+  }
+  if (assignment.find_first_not_of(' ', equals + 1) == std::string_view::npos) {
+    return refuse(
+        document, start,
+        fmt::format("\"{}\" has no value: write it behind the =, or leave --set out", assignment));
   }
   YamlDocument value;
   parse_yaml_text(value, std::string(assignment), equals + 1);

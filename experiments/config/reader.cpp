@@ -37,7 +37,7 @@ void YamlReader::finish() {
     if (moved.empty()) {
       mistakes_.push_back(
           {.position = member.position,
-           .text = fmt::format("unknown key \"{}\"{}", member.key, remedy_of(member.key)),
+           .text = fmt::format("unknown key \"{}\"{}", member.key, remedy_of(member)),
            .unknown_key = member.key});
     } else {
       mistakes_.push_back({member.position, fmt::format("\"{}\" {}", member.key, moved)});
@@ -54,9 +54,11 @@ void YamlReader::read_members(const YamlNode& node, const VisitMembers& visit_me
 }
 
 // What to do about a key that is not known.
-std::string YamlReader::remedy_of(const std::string& key) const {
+std::string YamlReader::remedy_of(const YamlNode::Member& member) const {
+  const std::string& key = member.key;
   // {rate: 12,5 kHz}
-  if (!key.empty() && key[0] >= '0' && key[0] <= '9') return std::string(kDecimalComma);
+  const bool has_value = kind_name(member.value) != "nothing";
+  if (!has_value && key[0] >= '0' && key[0] <= '9') return std::string(kDecimalComma);
   const auto inner = std::find_if(inner_.begin(), inner_.end(),
                                   [&key](const auto& known) { return known.first == key; });
   if (inner == inner_.end()) return suggestion(key, seen_);

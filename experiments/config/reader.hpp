@@ -44,7 +44,7 @@ class YamlReader final : public OptionVisitor {
   void skip_section(const OptionInfo& info, const VisitMembers& visit_members);
   void read_members(const YamlNode& node, const VisitMembers& visit_members,
                     std::string_view section);
-  std::string remedy_of(const std::string& key) const;
+  std::string remedy_of(const YamlNode::Member& member) const;
   void mistake(const YamlNode& node, std::string text);
   // False with a mistake where the node holds no such value.
   bool read(const OptionInfo& info, const YamlNode& node, double& value);

@@ -112,18 +112,23 @@ class Reader {
     return fmt::format("an axis is one path with dots and its values: write {}: [...]", path);
   }
 
+  // Nor is the sweep itself an option of a task.
+  bool refuse_no_option(const YamlNode::Member& member) {
+    const std::string first = member.key.substr(0, member.key.find('.'));
+    if (first != "kind" && first != "title" && first != "description" && first != key_)
+      return false;
+    mistake(member.position,
+            first + " is no axis: no number depends on it; sweep over other options");
+    return true;
+  }
+
   Group read_axes(const YamlNode& map) {
     Group axes;
     if (map.kind != YamlNode::Kind::kMap || map.members.empty()) {
       mistake(map.position, "axes are a map of option paths and lists of values");
     }
     for (const YamlNode::Member& member : map.members) {
-      if (member.key == "kind" || member.key == "title" || member.key == "description") {
-        mistake(member.position,
-                fmt::format("{} is no axis: no number depends on it; sweep over other options",
-                            member.key));
-        continue;
-      }
+      if (refuse_no_option(member)) continue;
       if (member.value.kind == YamlNode::Kind::kSequence && !member.value.items.empty()) {
         axes.push_back(&member);
         continue;
@@ -173,6 +178,9 @@ class Reader {
                   std::vector<SweepPoint>& plan) {
     if (item.kind != YamlNode::Kind::kMap || item.members.empty()) {
       return mistake(item.position, "a cell is a map of option paths and values");
+    }
+    for (const YamlNode::Member& member : item.members) {
+      if (refuse_no_option(member)) return;
     }
     plan.push_back(plain(item));
     points.push_back(&item);

@@ -1,7 +1,6 @@
 #include "experiments/records/inspection.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 
@@ -32,91 +31,6 @@ ChannelInspection inspect_channel(RecordedChannel& channel) {
           .clipping = find_clipping(channel.samples),
           .noise_rms = white_noise_rms(channel.samples),
           .fault = levels.not_finite == 0 ? find_fault(channel.samples) : std::nullopt};
-}
-
-bool same_word(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) ==
-           std::tolower(static_cast<unsigned char>(y));
-  });
-}
-
-/// Proposes who is who: by name, by unit, else the first channels that have no other role.
-class RoleFinder {
- public:
-  explicit RoleFinder(const std::vector<ChannelInspection>& channels)
-      : channels_(channels), taken_(channels.size(), false) {}
-
-  bool by_name(std::initializer_list<std::string_view> names, RecordedChannelOptions& options) {
-    return first(options, [&](const ChannelInspection& channel) { return is_one(channel, names); });
-  }
-  bool by_name_and_unit(std::initializer_list<std::string_view> names,
-                        RecordedChannelOptions& options) {
-    return first(options, [&](const ChannelInspection& channel) {
-      return is_one(channel, names) && is_unit_of(channel.unit, options.unit);
-    });
-  }
-  /// The first that are left: those in units of force where there are two, else what no unit
-  /// tells to be something else.
-  void two(RecordOptions& record) {
-    constexpr const char* kNoForces[] = {"m", "m/s", "m/s2", "K"};
-    const auto states_force = [](const ChannelInspection& channel) {
-      return is_unit_of(channel.unit, "N");
-    };
-    std::size_t forces = 0;
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      if (!taken_[i] && states_force(channels_[i])) ++forces;
-    }
-    const auto fits = [&](const ChannelInspection& channel) {
-      if (forces >= 2) return states_force(channel);
-      return std::ranges::none_of(kNoForces,
-                                  [&](const char* unit) { return is_unit_of(channel.unit, unit); });
-    };
-    record.has_left = first(record.left, fits);
-    record.has_right = first(record.right, fits);
-  }
-
- private:
-  static bool is_one(const ChannelInspection& channel,
-                     std::initializer_list<std::string_view> names) {
-    return std::ranges::any_of(
-        names, [&](std::string_view name) { return same_word(channel.name, name); });
-  }
-  // Takes the first that is left and fits.
-  template <typename Fits>
-  bool first(RecordedChannelOptions& options, const Fits& fits) {
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      if (taken_[i] || !fits(channels_[i])) continue;
-      taken_[i] = true;
-      options.channel = channels_[i].name;
-      if (!is_unit_of(channels_[i].unit, options.unit)) options.calibration = 1.0;
-      return true;
-    }
-    return false;
-  }
-
-  const std::vector<ChannelInspection>& channels_;
-  std::vector<bool> taken_;
-};
-
-RecordOptions propose(const std::filesystem::path& path, const InspectionOptions& options,
-                      const std::vector<ChannelInspection>& channels) {
-  RecordOptions record;
-  record.file = path.string();
-  record.format = options.format;
-  record.sample_rate = options.sample_rate;
-  RoleFinder roles(channels);
-  record.has_reference =
-      roles.by_name({"f_c", "fc", "force", "reference", "bow force"}, record.reference);
-  record.has_reference_velocity =
-      roles.by_name_and_unit({"v", "v_c", "velocity"}, record.reference_velocity);
-  record.has_reference_displacement =
-      roles.by_name_and_unit({"y", "y_c", "displacement"}, record.reference_displacement);
-  record.has_left = roles.by_name({"R1", "R_1", "left"}, record.left);
-  record.has_right = roles.by_name({"R2", "R_2", "right"}, record.right);
-  const bool named = record.has_left || record.has_right;
-  if (!named) roles.two(record);
-  return record;
 }
 
 // A hammer's force and what it sets in motion; or what moves alone.
@@ -183,6 +97,16 @@ void list_copies(const Recording& recording, InspectionReport& report) {
         fmt::format("{}: channels {} and {} are one signal, sample for sample: give each {} a "
                     "sensor and a channel of its own, or leave one of them out",
                     report.file, *twin, sensors[k], report.structure ? "place" : "end"));
+    ++report.problem_count;
+  }
+}
+
+// Of a stated rate; a run refuses them.
+void list_contradictions(const Recording& recording, InspectionReport& report) {
+  for (const std::string& text : recording.contradictions) {
+    std::erase(report.warnings, text);
+    report.problems.push_back(
+        fmt::format("{}; leave the stated rate out, or correct the file", text));
     ++report.problem_count;
   }
 }
@@ -277,9 +201,10 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
   for (RecordedChannel& channel : recording.channels) {
     report.channels.push_back(inspect_channel(channel));
   }
-  report.record = propose(path, options, report.channels);
+  report.record = proposed_roles(path, options, report.channels, report.warnings);
   report.structure = structure_of(report.channels, report.record);
   if (!report.structure) ask_for_calibrations(report);
+  list_contradictions(recording, report);
   list_faults(report);
   if (report.problem_count == 0) list_copies(recording, report);
   return report;

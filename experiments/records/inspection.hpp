@@ -68,6 +68,13 @@ struct InspectionReport {
 /// are listed, not thrown. Throws InvalidInput where the file cannot be read at all.
 InspectionReport inspect(const std::filesystem::path& path, const InspectionOptions& options = {});
 
+/// The channels that may be a string's ends and what is known at its contact: by their names, else
+/// by their units and order; of two forces the one beside an end that is named is the other end,
+/// with a warning.
+RecordOptions proposed_roles(const std::filesystem::path& path, const InspectionOptions& options,
+                             const std::vector<ChannelInspection>& channels,
+                             std::vector<std::string>& warnings);
+
 /// For a terminal; ends with the stanza.
 std::string text(const InspectionReport& report);
 /// Numbers that are not known are null.

@@ -177,14 +177,29 @@ Fault find_cut_end(Samples samples, const Run& last) {
                                  last.count, level)};
 }
 
+// Of a force that pushes and then is no more; a signal that is cut at 0 comes back every period.
+bool rests_at_zero(Samples samples) {
+  constexpr double kLong = 0.1;  // of the samples
+  bool rests = false;
+  for_each_run(samples, [&](const Run& run) {
+    rests |= samples[run.first] == 0.0 &&
+             static_cast<double>(run.count) >= kLong * static_cast<double>(samples.size());
+  });
+  return rests;
+}
+
 }  // namespace
 
 Clipping find_clipping(std::span<const double> samples) {
   const Levels levels = measure_levels(samples);
   Clipping clipping{.lowest = levels.lowest, .highest = levels.highest};
   if (!(levels.lowest < levels.highest)) return clipping;
-  const bool at_lowest = is_higher(pile_at(samples, false), 1.0);
-  const bool at_highest = is_higher(pile_at(samples, true), 1.0);
+  const bool rests = rests_at_zero(samples);
+  const auto is_cut = [&](double level, bool highest) {
+    return !(rests && level == 0.0) && is_higher(pile_at(samples, highest), 1.0);
+  };
+  const bool at_lowest = is_cut(levels.lowest, false);
+  const bool at_highest = is_cut(levels.highest, true);
   for_each_run(samples, [&](const Run& run) {
     const double value = samples[run.first];
     const bool extreme =

@@ -9,7 +9,8 @@
 namespace modcal {
 
 /// Runs of kShortestRun or more equal samples at the largest or the smallest value, where more
-/// stand there than where a signal of few steps turns.
+/// stand there than where a signal of few steps turns. Rest at 0 is none, where a run of it is a
+/// tenth of the samples or more.
 struct Clipping {
   std::size_t runs = 0;
   std::size_t samples = 0;  ///< samples in these runs

@@ -89,8 +89,10 @@ void Recording::check_finite(std::string_view file) {
   for (const RecordedChannel& channel : channels) {
     for (std::size_t i = 0; i < channel.samples.size(); ++i) {
       if (std::isfinite(channel.samples[i])) continue;
-      add_problem(fmt::format("{}: sample {} of channel {} is {}; repair the record or cut it out",
-                              file, i, channel.name, channel.samples[i]));
+      add_problem(
+          fmt::format("{}: sample {} of channel {} is {}; repair it, or keep only what stands "
+                      "before or behind it",
+                      file, i, channel.name, channel.samples[i]));
     }
   }
 }

@@ -72,7 +72,7 @@ auto at_key(const std::string& key, const Work& work) {
   try {
     return work();
   } catch (const InvalidInput& error) {
-    throw WrongRecordKey(key, error.what());
+    throw WrongRecordKey(key, error.what(), error.place());
   }
 }
 
@@ -131,7 +131,9 @@ Signal signal_of(const RecordedChannel& channel, const Role& role, double sample
   const double scale =
       (role.chosen.turned ? -1.0 : 1.0) * at_key(fmt::format("{}.calibration", role.key),
                                                  [&] { return scale_of(channel, role, file); });
-  std::vector<double> samples = advanced(channel.samples, role.chosen.delay, sample_rate);
+  std::vector<double> samples = at_key(fmt::format("{}.delay", role.key), [&] {
+    return advanced(channel.samples, role.chosen.delay, sample_rate);
+  });
   samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(window.last), samples.end());
   samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(window.first));
   for (double& value : samples) value *= scale;
@@ -191,7 +193,10 @@ RecordedSignals load_record(const RecordOptions& options, const std::filesystem:
   signals.warnings = recording.warnings;
   const std::size_t reactions = (options.has_left ? 1 : 0) + (options.has_right ? 1 : 0);
   for (std::size_t i = 0; i < roles.size(); ++i) {
-    judge_samples(recording, recording.channels[i], window, name, i < reactions, signals.warnings);
+    at_key(fmt::format("{}.channel", roles[i].key), [&] {
+      judge_samples(recording, recording.channels[i], window, name, i < reactions,
+                    signals.warnings);
+    });
     signals.*roles[i].target =
         signal_of(recording.channels[i], roles[i], recording.sample_rate, window, name);
   }

@@ -152,8 +152,8 @@ struct RecordedSignals {
 /// What one key of the section `record` states and the file does not bear.
 class WrongRecordKey : public InvalidInput {
  public:
-  WrongRecordKey(std::string key, const std::string& text)
-      : InvalidInput(text), key_(std::move(key)) {}
+  WrongRecordKey(std::string key, const std::string& text, std::string place = {})
+      : InvalidInput(text, std::move(place)), key_(std::move(key)) {}
   const std::string& key() const { return key_; }  ///< below `record`: "left.channel"
 
  private:
@@ -167,9 +167,9 @@ void require_vibration(const Recording& recording, const RecordedChannel& channe
 
 /// Reads the chosen channels of the file (relative to `folder`), converts them to SI units, shifts
 /// them by their delays and crops them. Throws WrongRecordKey for a channel that is not there or
-/// used twice or has neither a unit of its kind nor a calibration, a window outside the record and
-/// a stated sample rate that the file contradicts, and InvalidInput for a file that cannot be used
-/// and reactions whose samples tell against them (find_fault()).
+/// used twice or has neither a unit of its kind nor a calibration, reactions whose samples tell
+/// against them (find_fault()), a delay beyond the record, a window outside of it and a stated
+/// sample rate that the file contradicts, and InvalidInput for a file that cannot be used.
 /// Throws Interrupted where `stop` was requested.
 RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder,
                             const StopToken& stop = {});

@@ -204,7 +204,8 @@ Recording assemble(std::string format, std::vector<StoredChannel> stored,
     for (std::size_t i = 0; i < channel.head.samples.size(); ++i) {
       if (std::isfinite(channel.head.samples[i])) continue;
       recording.add_problem(fmt::format(
-          "{}: sample {} of channel {} is {}; repair the record or cut it out",
+          "{}: sample {} of channel {} is {}; repair it, or keep only what stands before or behind "
+          "it",
           channel.place.empty() ? file : channel.place, i, names[index], channel.head.samples[i]));
     }
     recording.channels.push_back(std::move(channel.head));

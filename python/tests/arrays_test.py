@@ -67,7 +67,7 @@ class FromArrays(Folder):
         nan = self.left.copy()
         nan[17] = np.nan
         for keys, words in (
-            ({"left": nan}, "sample 17 of channel R1 is nan; repair the record or cut it out"),
+            ({"left": nan}, "sample 17 of channel R1 is nan; repair it, or keep only what stands before or behind it"),
             ({"left": self.left.reshape(2, -1)}, "shape"),
             ({"left": []}, "is empty"),
             ({"left": np.ma.masked_less(self.left, 0.0)}, "masked samples"),

@@ -102,8 +102,9 @@ std::string cause_lines(const CalibrationResult& result) {
   }
   for (const ScoreTest& test : found.tests) {
     if (!test.named()) continue;
-    text += fmt::format("what the fit leaves looks like a {}: S {:.4g} of {}, by chance {}: {}\n",
-                        whole_name(test), test.statistic, test.degrees, chance(test), role(test));
+    text +=
+        fmt::format("what the fit leaves has the shape of: {}: S {:.4g} of {}, by chance {}: {}\n",
+                    whole_name(test), test.statistic, test.degrees, chance(test), role(test));
   }
   if (!found.tests.empty() && !first_cause(found.tests)) {
     std::vector<std::string_view> looked_for;
@@ -124,9 +125,9 @@ std::string cause_contradiction(const ContinuationResult& found) {
            "frequencies it is; end the band below them (objective: {type: joint_likelihood, "
            "highest_frequency: ...}), or take a part of the record that is played steadily";
   }
-  return fmt::format("what the fit leaves looks like a {} (by chance {}){}: {}", whole_name(*cause),
-                     chance(*cause), refuses ? ", which the error bars do not hold" : "",
-                     cause->remedy());
+  return fmt::format("what the fit leaves has the shape of: {} (by chance {}){}: {}",
+                     whole_name(*cause), chance(*cause),
+                     refuses ? ", which the error bars do not hold" : "", cause->remedy());
 }
 
 void visit_causes(ResultVisitor& visitor, const ContinuationResult& found) {

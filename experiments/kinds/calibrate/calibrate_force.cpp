@@ -25,8 +25,8 @@ void widen(const std::vector<InversionResult>& signals, Estimate& estimate) {
   if (signals.size() < 2) {
     estimate.warnings.emplace_back(
         "no model that was drawn about the calibrated one can be a string's: the force's band is "
-        "that "
-        "of the string found alone; state priors that hold it to what is known");
+        "that of the string found alone, which is too narrow; state priors that hold it to what is "
+        "known");
     return;
   }
   const std::size_t drawn = signals.size() - 1;

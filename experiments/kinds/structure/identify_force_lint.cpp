@@ -126,16 +126,23 @@ std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::p
     sensors = loaded.kinds.size();
     if (write_sound) lint_sound("write_sound", loaded.record.sample_rate, findings);
     if (kinds.empty()) return;
-    MODCAL_REQUIRE(sensors == kinds.size(),
-                   "{} responses for a table of {} sensors: name the same channels in its order",
-                   sensors, kinds.size());
-    for (std::size_t k = 0; k < sensors; ++k) {
-      MODCAL_REQUIRE(loaded.kinds[k] == kinds[k], "response {} is {}, in the table {}", k + 1,
-                     name_of(loaded.kinds[k]), name_of(kinds[k]));
+    if (sensors != kinds.size()) {
+      throw WrongKey(
+          "record.responses",
+          fmt::format("{} responses for a table of {} sensors: name the same channels in "
+                      "its order",
+                      sensors, kinds.size()));
     }
-    MODCAL_REQUIRE(std::isnan(window) || window <= loaded.record.duration(),
-                   "window = {:g} s is longer than the record, {:g} s", window,
-                   loaded.record.duration());
+    for (std::size_t k = 0; k < sensors; ++k) {
+      if (loaded.kinds[k] == kinds[k]) continue;
+      throw WrongKey(fmt::format("record.responses.{}.kind", k),
+                     fmt::format("response {} is {}, in the table {}", k + 1,
+                                 name_of(loaded.kinds[k]), name_of(kinds[k])));
+    }
+    if (window > loaded.record.duration()) {
+      throw WrongKey("window", fmt::format("window = {:g} s is longer than the record, {:g} s",
+                                           window, loaded.record.duration()));
+    }
   });
   return findings;
 }

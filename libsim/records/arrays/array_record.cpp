@@ -1,6 +1,8 @@
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
@@ -90,6 +92,27 @@ void add_functions(const Content& content, const std::filesystem::path& path,
   }
 }
 
+// Texts and objects as long as the channels beside them were meant to be one.
+void add_others(const Content& content, const std::filesystem::path& path,
+                std::vector<StoredChannel>& channels) {
+  std::vector<StoredChannel> others;
+  for (const NamedArray& array : content->arrays()) {
+    const auto is_as_long = [&array](const StoredChannel& channel) {
+      return channel.size == array.rows();
+    };
+    if (array.has_numbers() || array.is_note || !array.is_table() || array.columns() > 1 ||
+        std::ranges::none_of(channels, is_as_long)) {
+      continue;
+    }
+    StoredChannel& other = others.emplace_back();
+    other.head.name = array.text();
+    other.place = fmt::format("{}: {}", path.string(), other.head.name);
+    other.size = array.rows();
+    other.other_than_time = fmt::format("{} texts or objects in the place of numbers", other.size);
+  }
+  std::ranges::move(others, std::back_inserter(channels));
+}
+
 }  // namespace
 
 std::string NamedArray::text() const {
@@ -110,6 +133,7 @@ Recording recording_of(const Content& content, std::string_view kind,
   MODCAL_REQUIRE(!channels.empty(), "{}: no vector of numbers stands in this {}", path.string(),
                  kind);
   const std::size_t count = channels.size();
+  add_others(content, path, channels);
   Recording recording =
       assemble(fmt::format("{}, {} channel{}", kind, count, count == 1 ? "" : "s"),
                std::move(channels), options, path.string());

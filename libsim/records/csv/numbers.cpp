@@ -72,7 +72,8 @@ void require_apart(std::span<const std::string> headings, std::span<const std::s
 
 std::string describe_bad_number(NumberKind kind, std::string_view text) {
   if (kind == NumberKind::kNotFinite) {
-    return fmt::format("\"{}\" is no usable sample; repair the record or delete its row", text);
+    return fmt::format(
+        "\"{}\" is no usable sample; repair it, or keep only the rows before or behind it", text);
   }
   if (kind == NumberKind::kOutOfRange) {
     return fmt::format("\"{}\" is outside the range of double precision (4.9e-324 … 1.8e308)",

@@ -61,7 +61,7 @@ def cases(configs):
     yield "report listed", 0
     yield "replay listed 1", 0
     yield "compare listed listed --number levels.y.std", 0
-    yield "submit list.yaml --slurm --dry-run", 0
+    yield "submit long.yaml --slurm --dry-run", 0
     for text in ["help run", "completion bash", "man"]:
         yield text, 0
 
@@ -110,6 +110,9 @@ def main():
         folder = pathlib.Path(name)
         (folder / "small.yaml").write_text(SMALL, encoding="utf-8")
         (folder / "list.yaml").write_text(LIST, encoding="utf-8")
+        # Longer than what `submit` does by itself.
+        long = SMALL + f"sweep: {{product: {{seed: {list(range(1, 51))}}}}}\n"
+        (folder / "long.yaml").write_text(long, encoding="utf-8")
         shutil.copy(source / "examples/bowed_violin_d.csv", folder / "record.csv")
         found = list(findings(modcal, source / "configs", folder))
     print("\n".join(found) if found else "every answer obeys the schema")

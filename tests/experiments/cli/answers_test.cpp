@@ -35,6 +35,7 @@ class Answers : public testing::SmallRuns {
 
 TEST_F(Answers, AreOneJsonObjectOfEveryCommand) {
   ASSERT_EQ(modcal("run list.yaml --out listed").code, 0);
+  write("long.yaml", testing::kSmallSimulation + testing::many_seeds(50));
   const std::map<std::string, std::pair<std::string, std::string>> cases = {
       {"run", {"run small.yaml", "report"}},
       {"validate", {"validate small.yaml", "mistakes"}},
@@ -55,7 +56,7 @@ TEST_F(Answers, AreOneJsonObjectOfEveryCommand) {
       {"report", {"report listed", "report"}},
       {"replay", {"replay listed 1", "axes"}},
       {"compare", {"compare listed listed --number levels.y.std", "ratio"}},
-      {"submit", {"submit list.yaml --slurm --dry-run", "scripts"}},
+      {"submit", {"submit long.yaml --slurm --dry-run", "scripts"}},
       {"help", {"help run", "text"}},
       {"completion", {"completion bash", "text"}},
       {"man", {"man", "text"}}};

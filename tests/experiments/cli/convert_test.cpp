@@ -182,7 +182,14 @@ TEST_F(Convert, AFileWithoutEitherAsksForTheRate) {
   write("x.csv", "f [N],x [m]\n1,2\n3,4\n4,5\n");
   const Outcome refused = modcal("convert x.csv x.mat");
   EXPECT_EQ(refused.code, 3);
-  EXPECT_THAT(refused.err, HasSubstr("the sample rate is not known; state sample_rate"));
+  EXPECT_THAT(refused.err, HasSubstr("the sample rate is not known; state --sample-rate"));
+}
+
+TEST_F(Convert, NewNamesTheOptionOfTheRate) {
+  write("x.csv", "R1 [N],R2 [N]\n1,2\n3,4\n4,5\n");
+  const Outcome refused = modcal("new invert x.csv");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("the sample rate is not known; state --sample-rate, add"));
 }
 
 TEST_F(Convert, UnevenInstantsSayWhatToDo) {
@@ -202,7 +209,7 @@ TEST_F(Convert, UnevenInstantsSayWhatToDo) {
   const Outcome refused = modcal("convert c.uff c.mat");
   EXPECT_EQ(refused.code, 3);
   EXPECT_THAT(refused.err, HasSubstr("sampling is not uniform"));
-  EXPECT_THAT(refused.err, HasSubstr("resample the record, or state sample_rate"));
+  EXPECT_THAT(refused.err, HasSubstr("resample the record, or state --sample-rate"));
 }
 
 }  // namespace

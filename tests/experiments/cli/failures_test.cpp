@@ -47,7 +47,7 @@ TEST_F(Failures, OfASimulationSayWhyAndWhatToTry) {
 
 TEST_F(Failures, OfTasksStandOnTheLastLines) {
   const std::string last = "6 of 12 tasks failed:\n  task 6, 7, 8, 9, 10 … (6 tasks): " + kStops +
-                           "one of them again, with all that is drawn: modcal replay a 6\n";
+                           "one of them again: modcal replay a 6\n";
   const Outcome run = modcal("run list.yaml --out a");
   EXPECT_EQ(run.code, 4);
   EXPECT_THAT(run.out, EndsWith("settings, see tasks.csv\n" + last));

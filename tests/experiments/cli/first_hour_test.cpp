@@ -217,10 +217,50 @@ TEST_F(FirstHour, IsToldAtValidateWhatTheRecordLacks) {
   };
   refused("record.file=nowhere.csv", "--set", "cannot be opened");
   refused("record.left.channel=R7", "--set", "there is no channel \"R7\"");
+  refused("record.left.delay='5 s'", "--set", "a delay of 5 s does not fit");
   refused("record.start='2 s'", "--set", "is not in the record");
   refused("bow.position='290 mm'", "mine.yaml:5:", "exchanged");
   refused("'score={windows: [0.6 s]}'", "--set", "is not inside the record");
   refused("'figures=[{id: late, windows: [{start: 3 s}]}]'", "--set", "holds nothing of a record");
+}
+
+TEST_F(FirstHour, MayNameOneEndOtherwise) {
+  for (const char* names : {"bridge [N],R2", "R1 [N],nut",
+                            "Kr\xC3\xA4"
+                            "ft1 [N],R2"}) {
+    ASSERT_EQ(shell(fmt::format("sed 's/^R1 .N.,R2/{}/; s/,f_c .N.//' record.csv | awk -F, "
+                                "'/^-?[0-9]/ {{print $1 \",\" $2; next}} {{print}}' > other.csv",
+                                names))
+                  .code,
+              0);
+    const Outcome written = modcal("new invert other.csv --length '0.33 m'");
+    EXPECT_EQ(written.code, 0) << names << written.err;
+    EXPECT_THAT(written.out, HasSubstr("position: 41")) << names;
+    EXPECT_EQ(modcal("inspect other.csv").code, 0) << names;
+  }
+  ASSERT_EQ(shell("sed 's/R2/somewhat/; s/somewhat .N./somewhat/' record.csv > other.csv").code, 0);
+  const Outcome refused = modcal("new invert other.csv");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("only one of its channels (R1, somewhat, f_c) is told to be a "
+                                     "reaction, R1: "));
+}
+
+TEST_F(FirstHour, IsToldThatARunIsNotFinished) {
+  ASSERT_EQ(modcal("new calibrate record.csv --length '0.33 m' --out mine.yaml").code, 0);
+  const Outcome killed = shell("'" MODCAL_PROGRAM
+                               "' run mine.yaml --out 'a b' & "
+                               "while [ ! -f 'a b/resolved.yaml' ]; do sleep 0.02; done; "
+                               "'" MODCAL_PROGRAM "' status 'a b' 2> running; kill -KILL $!; wait");
+  ASSERT_TRUE(std::filesystem::exists(path("running"))) << killed.err;
+  EXPECT_THAT(content_of(path("running")),
+              HasSubstr("and works there now: its answer will stand in a b/answer.json"));
+  for (const char* command : {"status", "report"}) {
+    const Outcome said = modcal(std::string(command) + " 'a b'");
+    EXPECT_EQ(said.code, 3);
+    EXPECT_THAT(said.err, HasSubstr("and is not finished: it was stopped, or failed, and has left "
+                                    "no answer; run it again with:\n  modcal run mine.yaml --out "
+                                    "'a b'\n"));
+  }
 }
 
 TEST_F(FirstHour, HasAnExampleOfEveryKind) {

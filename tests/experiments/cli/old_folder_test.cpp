@@ -166,6 +166,7 @@ TEST_F(OldFolder, LosesTheExperimentsThatAReproductionNoLongerHas) {
 
 TEST_F(OldFolder, KeepsScriptsThatSubmitDidNotWrite) {
   const std::string submit = "submit list.yaml --slurm --dry-run --out a";
+  write("list.yaml", testing::kSmallSimulation + testing::many_seeds(50));
   std::filesystem::create_directories(path("a/slurm"));
   write("a/slurm/merge.sh", "mine\n");
   const Outcome outcome = modcal(submit);

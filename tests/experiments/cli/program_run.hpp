@@ -31,6 +31,13 @@ inline constexpr std::string_view kEightTasks = R"(sweep:
     seed: [1, 2, 3, 4]
 )";
 
+/// Axes that make so many tasks of it, of which `submit` does not do all.
+inline std::string many_seeds(int count) {
+  std::string seeds = "1";
+  for (int seed = 2; seed <= count; ++seed) seeds += ", " + std::to_string(seed);
+  return "sweep: {product: {seed: [" + seeds + "]}}\n";
+}
+
 /// A test with a folder of its own.
 class ProgramTest : public FolderTest {
  protected:

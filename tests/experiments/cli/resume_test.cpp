@@ -90,6 +90,8 @@ TEST_F(Resume, ShardsGiveTheTableOfTheWhole) {
     EXPECT_THAT(outcome.out, HasSubstr("modcal report parts"));
     EXPECT_FALSE(std::filesystem::exists(folder() / "parts/report.html"));
   }
+  EXPECT_THAT(modcal("run sweep.yaml --out 'in two' --shard 1/2").out,
+              HasSubstr("modcal report 'in two'\n"));
   ASSERT_EQ(modcal("report parts").code, 0);
   EXPECT_EQ(tables_of("parts"), tables_of("whole"));
   EXPECT_EQ(digest_of("parts"), digest_of("whole"));
@@ -106,6 +108,13 @@ TEST_F(Resume, SaysHowFarARunIsAndReportsWhatThereIs) {
   EXPECT_EQ(counts["running"], false);
   EXPECT_THAT(modcal("status part").out,
               HasSubstr("go on with:\n  modcal run sweep.yaml --out part"));
+  const Outcome below = shell("mkdir below; cd below; '" MODCAL_PROGRAM "' status ../part");
+  EXPECT_THAT(below.out, HasSubstr("go on with:\n  cd " + folder().string() +
+                                   " && modcal run sweep.yaml --out part\n"));
+  // Nor does a report from there make them paths from there.
+  ASSERT_EQ(shell("cd below; '" MODCAL_PROGRAM "' report ../part").code, 0);
+  EXPECT_THAT(shell("cd below; '" MODCAL_PROGRAM "' status ../part").out,
+              HasSubstr(" && modcal run sweep.yaml --out part\n"));
   ASSERT_EQ(modcal("report part").code, 0);
   EXPECT_THAT(content_of(folder() / "part/report.html"), HasSubstr("10 of 40 tasks done"));
 }

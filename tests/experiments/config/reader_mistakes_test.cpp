@@ -160,6 +160,11 @@ INSTANTIATE_TEST_SUITE_P(
              "a.yaml:1:1: error: the file is empty: an experiment starts with kind:\n"
              "    # nothing\n"
              "    ^\n"},
+        // Lines of an old Macintosh.
+        Case{"# title\r- 1\r",
+             "a.yaml:2:1: error: the file must be a map of keys and values, kind: first\n"
+             "    - 1\n"
+             "    ^\n"},
         Case{"- 1\n",
              "a.yaml:1:1: error: the file must be a map of keys and values, kind: first\n"
              "    - 1\n"

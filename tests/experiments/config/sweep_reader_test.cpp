@@ -91,6 +91,9 @@ TEST(SweepReader, NamesMistakesWithTheirPlaces) {
   EXPECT_THAT(cells("zip: [{a: [1, 1, 1], b: [1, 2, 1]}]"),
               ElementsAre("1:18: a 1, b 1 stands here twice: leave one of them"));
   EXPECT_THAT(cells("product: {kind: [a]}")[0], HasSubstr("kind is no axis"));
+  EXPECT_THAT(cells("product: {sweep: [1, foo]}")[0], HasSubstr("sweep is no axis"));
+  EXPECT_THAT(cells("zip: [{sweep.product: [1]}]")[0], HasSubstr("sweep is no axis"));
+  EXPECT_THAT(cells("include: [{a: 1, title: b}]")[0], HasSubstr("title is no axis"));
   std::vector<int> numbers(1001);
   std::iota(numbers.begin(), numbers.end(), 0);
   const std::string many = fmt::format("{}", fmt::join(numbers, ", "));

@@ -96,6 +96,16 @@ TEST_F(Inspect, FindsClipping) {
   EXPECT_EQ(find_clipping({}).runs, 0u);
 }
 
+TEST_F(Inspect, TakesRestAtZeroForNoClipping) {
+  std::vector<double> samples(10000, 0.0);
+  for (std::size_t i = 0; i < 10; ++i) samples[300 + i] = static_cast<double>(1 + i);
+  EXPECT_EQ(find_clipping(samples).runs, 0u);
+  // What is cut there comes back.
+  std::vector<double> cut = noisy_sine(1.0, 0.0, 0.3, 5120);
+  for (double& value : cut) value = std::max(value, 0.0);
+  EXPECT_GT(find_clipping(cut).runs, 40u);
+}
+
 TEST_F(Inspect, TakesNoSignalOfFewStepsForClipped) {
   std::vector<double> samples = noisy_sine(1.0, 0.0, 0.0, 5120);
   for (double& value : samples) value = std::round(5.0 * value);
@@ -170,11 +180,16 @@ TEST_F(Inspect, ProposesAnExperiment) {
   EXPECT_TRUE(yaml["bow"]["position"].IsNull());
 }
 
-TEST_F(Inspect, ProposesOneReactionWhereOnlyOneIsNamed) {
-  const auto file = write("r.csv", "t,R2 [N],other [N]\n0,1,1\n1,2,2\n");
-  const YAML::Node record = YAML::Load(stanza(inspect(file)))["record"];
-  EXPECT_FALSE(record["left"].IsDefined());
+TEST_F(Inspect, ProposesTheOnlyOtherForceWhereOneReactionIsNamed) {
+  const auto file = write("r.csv", "t,R2 [N],other [N],v [m/s]\n0,1,1,1\n1,2,3,2\n");
+  const InspectionReport two = inspect(file);
+  const YAML::Node record = YAML::Load(stanza(two))["record"];
+  EXPECT_EQ(record["left"]["channel"].as<std::string>(), "other");
   EXPECT_EQ(record["right"]["channel"].as<std::string>(), "R2");
+  EXPECT_THAT(two.warnings, ElementsAre(HasSubstr("leave record.left out if it is none")));
+  // Which of two it would be nobody knows.
+  const auto three = write("r.csv", "t,R2 [N],other [N],bow [N]\n0,1,1,1\n1,2,3,2\n");
+  EXPECT_FALSE(YAML::Load(stanza(inspect(three)))["record"]["left"].IsDefined());
 }
 
 TEST_F(Inspect, ProposesByUnitsWhereNamesSayNothing) {

@@ -115,10 +115,10 @@ TEST_F(CsvReader, ReportsFieldsThatAreNoNumbers) {
             "r.csv:2:3: sample 0 of R1: the field is empty; every row needs a number in every "
             "column");
   EXPECT_EQ(error("t,R1\n0,1\n1,nan\n2,-inf\n"),
-            "r.csv:3:3: sample 1 of R1: \"nan\" is no usable sample; repair the record or delete "
-            "its row\n"
-            "r.csv:4:3: sample 2 of R1: \"-inf\" is no usable sample; repair the record or delete "
-            "its row");
+            "r.csv:3:3: sample 1 of R1: \"nan\" is no usable sample; repair it, or keep only the "
+            "rows before or behind it\n"
+            "r.csv:4:3: sample 2 of R1: \"-inf\" is no usable sample; repair it, or keep only the "
+            "rows before or behind it");
   EXPECT_EQ(error("t,R1\n0,1e400\n1,1e-400\n"),
             "r.csv:2:3: sample 0 of R1: \"1e400\" is outside the range of double precision "
             "(4.9e-324 … 1.8e308)\n"

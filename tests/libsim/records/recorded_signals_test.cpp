@@ -224,7 +224,7 @@ TEST_F(LoadRecord, RefusesARateThatTheFileContradicts) {
   RecordOptions options = csv(kRecord);
   options.sample_rate = 2.1;
   EXPECT_THAT(error(options), testing::AllOf(HasSubstr("the file contradicts it"),
-                                             HasSubstr("the file says 2 Hz, the stated 2.1 Hz"),
+                                             HasSubstr("the file says 2 Hz, not the stated 2.1 Hz"),
                                              HasSubstr("leave record.sample_rate out")));
   options.sample_rate = 2.0004;
   EXPECT_EQ(error(options), "accepted");

@@ -176,7 +176,7 @@ TEST_F(Wav, RefusesSamplesThatAreNoNumbers) {
   const double inf = std::numeric_limits<double>::infinity();
   const auto file = foreign("a.wav", SF_FORMAT_WAV | SF_FORMAT_FLOAT, 2, {0, 0, 0, nan, inf, 0});
   const std::string message = refusal_of([&] { read_wav(file); });
-  EXPECT_THAT(message, HasSubstr("sample 2 of channel 1 is inf; repair the record or cut it out"));
+  EXPECT_THAT(message, HasSubstr("sample 2 of channel 1 is inf; repair it, or keep only what"));
   EXPECT_THAT(message, HasSubstr("sample 1 of channel 2 is nan"));
   EXPECT_EQ(read_wav(file, {.channels = {}, .survey = true}).problem_count, 2u);
 }
