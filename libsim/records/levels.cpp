@@ -179,11 +179,10 @@ Fault find_cut_end(Samples samples, const Run& last) {
 
 // Of a force that pushes and then is no more; a signal that is cut at 0 comes back every period.
 bool rests_at_zero(Samples samples) {
-  constexpr double kLong = 0.1;  // of the samples
   bool rests = false;
   for_each_run(samples, [&](const Run& run) {
     rests |= samples[run.first] == 0.0 &&
-             static_cast<double>(run.count) >= kLong * static_cast<double>(samples.size());
+             static_cast<double>(run.count) >= kRestAtZero * static_cast<double>(samples.size());
   });
   return rests;
 }

@@ -159,6 +159,13 @@ class Attempt {
       if (direct.objective > found.objective + 1e-2) second_theta_ = direct.theta;
     }
     law_theta_ = ladder_theta_ = found.theta;
+    ladder_misfit_ = misfit(last, found.objective);
+  }
+
+  // Over the degrees of freedom, weights and priors aside.
+  double misfit(const ProjectedLikelihood& likelihood, double objective) const {
+    const std::size_t free_count = law_.size() - law_.held_count();
+    return objective / likelihood.degrees_of_freedom(free_count, reference_);
   }
 
   // σ = 0, end state projected out.
@@ -170,11 +177,24 @@ class Attempt {
   // by odds of more than e^10, as unknowns that hardly matter leave two fits of one minimum apart.
   void fit_whole_of_ladder() {
     end_whole("law", whole_from(law_theta_));
+    if (misfit(stroke_.whole(), whole_objective_) > kLost * std::max(1.0, ladder_misfit_)) {
+      find_law_again();
+    }
     if (second_theta_.size() == 0) return;
     const NewtonFit second = whole_from(second_theta_);
     if (!(second.objective < whole_objective_ - kMinimaOdds)) return;
     ladder_theta_ = second_theta_;
     end_whole("law from its second minimum", second);
+  }
+
+  // Sensors and damping that wander where the law is still off lose it: first they stay near what
+  // was stated, as if noise were as large as what is left.
+  void find_law_again() {
+    NewtonOptions stiff = with_priors(law_, ladder_theta_, kLawSteps, 1e-2);
+    stiff.prior *= misfit(stroke_.whole(), whole_objective_);
+    const NewtonFit near = stroke_.fit(stroke_.whole(), law_, ladder_theta_, stiff);
+    const NewtonFit found = whole_from(near.theta);
+    if (found.objective < whole_objective_) end_whole("law, sensors and damping last", found);
   }
 
   void fit_whole(const std::string& name) { end_whole(name, whole_from(law_theta_)); }
@@ -242,6 +262,7 @@ class Attempt {
   StiffStringFit start_;
   StringUnknowns law_;
   Eigen::VectorXd law_theta_, ladder_theta_;
+  double ladder_misfit_ = 0.0;  // at the last rung
   double whole_objective_ = 0.0;
   Eigen::VectorXd second_theta_;  // of another minimum at the last rung; empty: there is none
 };

@@ -12,9 +12,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Steps of a fit of two pairs of poles at most.
-constexpr int kPairSteps = 12;
-
 struct NearStrike {
   ContourSpectra spectra;
   std::vector<std::vector<double>> weights;
