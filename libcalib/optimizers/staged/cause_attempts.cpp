@@ -26,17 +26,7 @@ ContinuationResult attempt_with_its_noise(const AttemptInput& input, double shif
     if (found.law.accepted && found.chi2 > 1.0 - 3.0 * found.chi2_deviation) break;
     const ProjectedLikelihood whole(WhitenedRecord::of(input.records, 0.0, input.highest));
     if (!input.take_noise(whole, found.model, 0.05)) break;
-    ContinuationResult next = attempt_continuation(input, shift, found.evaluations);
-    if (found.fits && !next.fits) {
-      // The noise was right, and this attempt has lost its way.
-      input.records.deviation = found.noise;
-      input.records.noise = found.noise_spectrum;
-      input.records.power_error = found.noise_error;
-      append_stages(next.stages, "other noise: ", 0, found.stages);
-      found.evaluations = next.evaluations;
-      break;
-    }
-    follow(found, "other noise: ", std::move(next));
+    follow(found, "other noise: ", attempt_continuation(input, shift, found.evaluations));
   }
   return found;
 }

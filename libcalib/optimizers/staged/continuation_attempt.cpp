@@ -60,12 +60,14 @@ class Attempt {
     result.repeats = shift != 0.0 && same(result.law, *input_.first_law);
     if (options().frequencies && !result.repeats) {
       const bool accepted = result.law.accepted;
+      const ContinuationResult of_law = result;
       free_frequencies(input_, {law_, accepted ? law_theta_ : ladder_theta_, accepted}, stroke_,
                        result);
       // Damped records have led modes away from where the law, which is nearly right, has them.
       if (!accepted && result.chi2 > result.law.chi2) {
-        result.moved_modes = 0;
-        free_frequencies(input_, {law_, law_theta_, true}, stroke_, result);
+        ContinuationResult from_law = of_law;
+        free_frequencies(input_, {law_, law_theta_, true}, stroke_, from_law);
+        if (from_law.chi2 < result.chi2) result = std::move(from_law);
       }
       leave_out(result);
       report_departures(result.tests, result);
