@@ -1,19 +1,12 @@
 // Who is who in a record of a string.
 #include <algorithm>
-#include <cctype>
 
 #include "experiments/records/inspection.hpp"
 #include "libsim/base/units.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
-
-bool same_word(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) ==
-           std::tolower(static_cast<unsigned char>(y));
-  });
-}
 
 /// Proposes who is who: by name, by unit, else the first channels that have no other role.
 class RoleFinder {
@@ -61,8 +54,9 @@ class RoleFinder {
   }
   static bool is_one(const ChannelInspection& channel,
                      std::initializer_list<std::string_view> names) {
-    return std::ranges::any_of(
-        names, [&](std::string_view name) { return same_word(channel.name, name); });
+    return std::ranges::any_of(names, [&](std::string_view name) {
+      return lower_case(channel.name) == lower_case(std::string(name));
+    });
   }
   // Takes the first that is left and fits.
   template <typename Fits>

@@ -177,14 +177,18 @@ Fault find_cut_end(Samples samples, const Run& last) {
                                  last.count, level)};
 }
 
-// Of a force that pushes and then is no more; a signal that is cut at 0 comes back every period.
+// Of a force that pushes and then is no more; a signal that is cut at 0 comes back every period,
+// and most of its zeros are not in long runs.
 bool rests_at_zero(Samples samples) {
-  bool rests = false;
+  std::size_t zeros = 0, at_rest = 0;
   for_each_run(samples, [&](const Run& run) {
-    rests |= samples[run.first] == 0.0 &&
-             static_cast<double>(run.count) >= kRestAtZero * static_cast<double>(samples.size());
+    if (samples[run.first] != 0.0) return;
+    zeros += run.count;
+    const auto count = static_cast<double>(run.count);
+    if (count >= kRestAtZero * static_cast<double>(samples.size())) at_rest += run.count;
   });
-  return rests;
+  return zeros > 0 &&
+         static_cast<double>(at_rest) > (1.0 - kRestAtZero) * static_cast<double>(zeros);
 }
 
 }  // namespace

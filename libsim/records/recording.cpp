@@ -48,13 +48,12 @@ void Recording::tell_of_instants(std::string text, bool breaks, bool is_rate_sta
 
 void Recording::compare_rate(double stated, double rounding, std::string_view file) {
   const double difference = std::abs(sample_rate / stated - 1.0);
-  if (difference > rounding) {
+  if (difference > kCalibratedClock && difference > rounding) {
+    contradict(fmt::format("{}: the file says {:.9g} Hz, not the stated {:.9g} Hz", file,
+                           sample_rate, stated));
+  } else if (difference > rounding) {
     warnings.push_back(fmt::format("{}: the file says {:.9g} Hz, the stated {:.9g} Hz is used",
                                    file, sample_rate, stated));
-    if (difference > kCalibratedClock) {
-      contradictions.push_back(fmt::format("{}: the file says {:.9g} Hz, not the stated {:.9g} Hz",
-                                           file, sample_rate, stated));
-    }
   }
   sample_rate = stated;
   rate_source = "as stated by the user";

@@ -108,7 +108,8 @@ constexpr double kEmptyBand = 1e-5;
 /// Halved: not tried.
 constexpr std::size_t kShortestBandRecord = 3200;
 
-/// Share of the samples of one run of zeros from which on a channel rests there and is not clipped.
+/// Share of the samples of one run of zeros from which on a channel rests there, and of its zeros
+/// that such runs may lack where it is not clipped.
 /// Source: a blow lasts a hundredth of its record; a signal that is cut at 0 comes back every
 /// period. Range tried: this. Doubled: not tried. Halved: not tried.
 constexpr double kRestAtZero = 0.1;

@@ -104,6 +104,9 @@ TEST_F(Inspect, TakesRestAtZeroForNoClipping) {
   std::vector<double> cut = noisy_sine(1.0, 0.0, 0.3, 5120);
   for (double& value : cut) value = std::max(value, 0.0);
   EXPECT_GT(find_clipping(cut).runs, 40u);
+  // And when the signal has died away it looks like rest.
+  cut.resize(2 * cut.size(), 0.0);
+  EXPECT_GT(find_clipping(cut).runs, 40u);
 }
 
 TEST_F(Inspect, TakesNoSignalOfFewStepsForClipped) {
