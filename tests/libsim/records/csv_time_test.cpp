@@ -20,8 +20,7 @@ TEST_F(CsvTime, TakesTheSampleRateFromAComment) {
 TEST_F(CsvTime, TakesTheSampleRateOfTheUserFirst) {
   const Recording record = read("# sample_rate: 10 Hz\nR1\n1\n2\n", {.sample_rate = 20.0});
   EXPECT_EQ(record.sample_rate, 20.0);
-  EXPECT_THAT(record.warnings,
-              ElementsAre(HasSubstr("the file says 10 Hz, not the stated 20 Hz")));
+  EXPECT_THAT(record.warnings, ElementsAre(HasSubstr("the file says 10 Hz, not the stated 20 Hz")));
   EXPECT_EQ(record.contradictions, record.warnings);
   // As a calibration of the clock tells.
   const Recording close = read("# sample_rate: 51200 Hz\nR1\n1\n2\n", {.sample_rate = 51203.0});
