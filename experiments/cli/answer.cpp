@@ -77,16 +77,25 @@ nlohmann::ordered_json json_of(const InputPlace& place) {
   return result;
 }
 
-// verdict: of the run, which is the message where nothing else was complained of.
+// reason: of the run, which is the message where nothing else was complained of.
 nlohmann::ordered_json error_json(ExitCode code, const std::vector<Complaint>& errors,
-                                  const std::string& verdict) {
+                                  const std::string& reason) {
   nlohmann::ordered_json error = {{"kind", kind_of(code)}, {"exit_code", static_cast<int>(code)}};
-  error["message"] = !errors.empty()    ? message_of(errors.front())
-                     : !verdict.empty() ? verdict
-                                        : std::string(meaning_of(code));
+  error["message"] = !errors.empty()   ? message_of(errors.front())
+                     : !reason.empty() ? reason
+                                       : std::string(meaning_of(code));
   error["place"] = errors.empty() ? nlohmann::ordered_json() : json_of(errors.front().place);
   for (std::size_t i = 1; i < errors.size(); ++i) error["further"].push_back(message_of(errors[i]));
   return error;
+}
+
+// What failed of a list, or else its verdict.
+std::string reason_in(const nlohmann::ordered_json& answer) {
+  const auto failures = answer.find("failures");
+  if (failures == answer.end() || failures->empty()) return answer.value("verdict", std::string());
+  const auto& first = failures->front();
+  return fmt::format("{} tasks failed, task {} as: {}", answer.value("failed_tasks", 0),
+                     first["first"].front().get<std::size_t>(), first["reason"].get<std::string>());
 }
 
 void write_json_answer(ExitCode code) {
@@ -97,7 +106,7 @@ void write_json_answer(ExitCode code) {
   if (!answer.text.empty()) object["text"] = answer.text;
   if (!answer.warnings.empty()) object["warnings"] = answer.warnings;
   if (code != ExitCode::kOk) {
-    object["error"] = error_json(code, answer.errors, object.value("verdict", std::string()));
+    object["error"] = error_json(code, answer.errors, reason_in(object));
   }
   write_out(json_text(object));
 }

@@ -128,7 +128,10 @@ PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context,
     seconds += taken;
     ++pilot.run;
   }
-  pilot.pending = pending.size() - pilot.run;
+  std::set<std::size_t> done;
+  for (std::size_t i = 0; i < pilot.run; ++i) done.insert(pending[i * pending.size() / count]);
+  std::ranges::copy_if(pending, std::back_inserter(pilot.pending),
+                       [&done](std::size_t task) { return !done.contains(task); });
   if (pilot.run > 0) pilot.seconds_per_task = seconds / static_cast<double>(pilot.run);
   return pilot;
 }
@@ -150,7 +153,7 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) 
       loaded, folder, settings.command, work,
       [&](const StudyContext& context) { return run_some_tasks(*list, context, store); });
   MODCAL_REQUIRE(
-      pilot.pending > 0,
+      !pilot.pending.empty(),
       "all {} tasks are done: nothing is left to share out; report with:\n  modcal report {}",
       list->task_count(), shell_word(settings.out.string()));
   return pilot;

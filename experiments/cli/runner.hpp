@@ -38,9 +38,9 @@ ExitCode present(const LoadedExperiment& loaded, StudyResult result, const RunSe
 
 /// What a few tasks of a list cost.
 struct PilotRun {
-  std::size_t pending = 0;        ///< tasks still to do
-  std::size_t run = 0;            ///< tasks that the mean is taken over
-  double seconds_per_task = 0.0;  ///< mean
+  std::vector<std::size_t> pending = {};  ///< tasks still to do, ascending
+  std::size_t run = 0;                    ///< tasks that the mean is taken over
+  double seconds_per_task = 0.0;          ///< mean
 };
 
 /// Runs evenly spaced tasks of a list for ten seconds, at least one and at most twenty; their
@@ -100,6 +100,8 @@ class StoredRun {
   /// What was finished when the folder was read, by task.
   const TaskOutcomes& outcomes() const { return *outcomes_; }
   std::size_t tasks() const { return outcomes_->size(); }
+  /// Results in its journals of other settings, records or programs.
+  std::size_t other_results() const { return finished_->size() - outcomes_->records(); }
   /// Throws InvalidInput where no task is finished.
   void require_some_done() const;
   const std::vector<JournalDamage>& damages() const { return finished_->damages(); }

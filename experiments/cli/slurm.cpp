@@ -1,5 +1,6 @@
 #include "experiments/cli/slurm.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -89,12 +90,12 @@ ExitCode submit_to_slurm(const SubmitArguments& arguments) {
   OutputDirectory(out).announce({kSlurmScripts.begin(), kSlurmScripts.end()});
   scripts.write_text("run.sh", slurm_array_script(slurm, bundles));
   scripts.write_text("merge.sh", slurm_merge_script(slurm));
-  add_to_json("tasks", pilot.pending);
+  add_to_json("tasks", pilot.pending.size());
   add_to_json("jobs", bundles.count);
   add_to_json("scripts", folder.string());
   say("{} tasks to do, {:.3g} s each (mean of {} that were run): {:.3g} core-hours\n",
-      pilot.pending, pilot.seconds_per_task, pilot.run,
-      static_cast<double>(pilot.pending) * pilot.seconds_per_task / 3600.0);
+      pilot.pending.size(), pilot.seconds_per_task, pilot.run,
+      static_cast<double>(pilot.pending.size()) * pilot.seconds_per_task / 3600.0);
   say("{} jobs of {} threads, about {:.3g} s each; scripts in {}\n", bundles.count, threads,
       bundles.seconds, folder.string());
   if (!arguments.dry_run) submit(folder);
@@ -120,17 +121,31 @@ void declare(CLI::App& command, SubmitArguments& arguments) {
   command.add_flag("--dry-run", arguments.dry_run, "write the scripts and submit nothing");
 }
 
+// Tasks of the longest of so many shards.
+std::size_t largest_shard(std::span<const std::size_t> pending, std::size_t count) {
+  std::vector<std::size_t> loads(count, 0);
+  for (const std::size_t task : pending) ++loads[task % count];
+  return *std::ranges::max_element(loads);
+}
+
 }  // namespace
 
-SlurmBundles slurm_bundles(std::size_t tasks, double seconds_per_task, std::size_t threads,
-                           double bundle_seconds, std::size_t most) {
-  const double core_seconds = static_cast<double>(tasks) * seconds_per_task;
-  const double seconds = core_seconds / static_cast<double>(threads);
-  const double wanted = std::ceil(seconds / bundle_seconds);
-  const auto limit = static_cast<double>(std::max<std::size_t>(1, std::min(tasks, most)));
-  SlurmBundles bundles;
-  bundles.count = static_cast<std::size_t>(std::clamp(wanted, 1.0, limit));
-  bundles.seconds = seconds / static_cast<double>(bundles.count);
+SlurmBundles slurm_bundles(std::span<const std::size_t> pending, double seconds_per_task,
+                           std::size_t threads, double bundle_seconds, std::size_t most) {
+  const double task_seconds = seconds_per_task / static_cast<double>(threads);
+  const double wanted =
+      std::ceil(static_cast<double>(pending.size()) * task_seconds / bundle_seconds);
+  const auto limit = static_cast<double>(std::max<std::size_t>(1, std::min(pending.size(), most)));
+  SlurmBundles bundles{.count = static_cast<std::size_t>(std::clamp(wanted, 1.0, limit))};
+  // Where other shards did a part of the list, what is left may be all in one of as many.
+  const std::size_t even = pending.size() / bundles.count + 1;
+  const std::size_t last = std::min(most, 2 * bundles.count + 7);
+  std::size_t load = largest_shard(pending, bundles.count);
+  for (std::size_t count = bundles.count + 1; count <= last && 4 * load > 5 * even; ++count) {
+    const std::size_t other = largest_shard(pending, count);
+    if (other < load) bundles.count = count, load = other;
+  }
+  bundles.seconds = static_cast<double>(load) * task_seconds;
   const double minutes = std::ceil(3.0 * bundles.seconds / 60.0);
   bundles.time_limit = std::max<std::size_t>(10, static_cast<std::size_t>(minutes));
   return bundles;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace modcal {
@@ -14,11 +15,12 @@ struct SlurmBundles {
   std::size_t time_limit = 10;  ///< to ask for [minutes]
 };
 
-/// Jobs of about `bundle_seconds`, at most `most` and no more than tasks. The limit asked for is
-/// three times what is expected, and ten minutes at least: a job that is cut loses nothing and is
-/// gone on with, but has to wait again.
-SlurmBundles slurm_bundles(std::size_t tasks, double seconds_per_task, std::size_t threads,
-                           double bundle_seconds, std::size_t most);
+/// Jobs of about `bundle_seconds`, at most `most`, no more than tasks where these are spread evenly
+/// over as many shards, else of that number that spreads them best. `pending`: the tasks to do. The
+/// limit asked for is three times what the longest is expected to take, and ten minutes at least: a
+/// job that is cut loses nothing and is gone on with, but has to wait again.
+SlurmBundles slurm_bundles(std::span<const std::size_t> pending, double seconds_per_task,
+                           std::size_t threads, double bundle_seconds, std::size_t most);
 
 struct SlurmSettings {
   std::string program;  ///< modcal

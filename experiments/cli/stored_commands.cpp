@@ -73,6 +73,7 @@ ExitCode status(const FolderArguments& arguments) {
                 {"done", counts.done},
                 {"failed", counts.failed},
                 {"pending", counts.pending()},
+                {"other_results", run.other_results()},
                 {"damaged_lines", run.damages().size()},
                 {"median_task_seconds", counts.median_seconds},
                 {"left_core_seconds", counts.left_seconds()},
@@ -81,6 +82,10 @@ ExitCode status(const FolderArguments& arguments) {
   }
   say("{}: {}\n{} of {} tasks done, {} failed, {} to do\n", run.loaded().kind, run.loaded().title,
       counts.done, counts.all, counts.failed, counts.pending());
+  if (run.other_results() > 0) {
+    say("{} results of other settings, records or programs lie here and do not count\n",
+        run.other_results());
+  }
   say("{}\n", running ? "a run works here now" : "no run works here");
   if (counts.done > 0) {
     say("a task took {:.3g} s (median)", counts.median_seconds);
@@ -170,6 +175,26 @@ Cell cell_of(const StoredRun& run, std::size_t task) {
   return cell;
 }
 
+// How a sentence ends that a list has no number of this name.
+std::string numbers_to_compare(const StoredRun& run, const std::string& number) {
+  constexpr std::size_t kMostNamed = 8;
+  std::vector<std::string> names;
+  for (std::size_t task = 0; task < run.tasks() && names.empty(); ++task) {
+    if (const auto finished = run.outcomes()[task])
+      names = run.list().numbers_in(finished->outcome);
+  }
+  if (const std::string nearest = nearest_name(number, names); !nearest.empty()) {
+    return fmt::format("; did you mean \"{}\"?", nearest);
+  }
+  if (!run.list().loss_name().empty()) {
+    return fmt::format(": without --number the {} is compared", run.list().loss_name());
+  }
+  const bool all = names.size() <= kMostNamed;
+  names.resize(std::min(names.size(), kMostNamed));
+  return fmt::format(": it has {}{}; see the columns of tasks.csv", fmt::join(names, ", "),
+                     all ? "" : ", …");
+}
+
 // Losses of the finished tasks by their cells, or the number of that name; a draw without a result
 // is worse than any other.
 std::map<Cell, double> losses_of(const StoredRun& run, const std::string& number) {
@@ -189,8 +214,8 @@ std::map<Cell, double> losses_of(const StoredRun& run, const std::string& number
     any = any || loss;
     losses[cell_of(run, task)] = loss.value_or(1e300);
   }
-  MODCAL_REQUIRE(any, "no task of {} has a number {}: its names are columns of tasks.csv",
-                 run.out().string(), number);
+  MODCAL_REQUIRE(any, "no task of {} has a number {}{}", run.out().string(), number,
+                 numbers_to_compare(run, number));
   return losses;
 }
 
@@ -202,7 +227,8 @@ std::string verdict(const MedianRatio& ratio, const std::string& a, const std::s
 
 ExitCode compare(const FolderArguments& arguments) {
   const std::string &out_a = arguments.folder, &out_b = arguments.other;
-  const std::string& number = arguments.number;
+  // As a heading of settings.csv has it: without the unit.
+  const std::string number = arguments.number.substr(0, arguments.number.find(" ["));
   const StoredRun run_a(out_a), run_b(out_b);
   MODCAL_REQUIRE(run_a.loaded().kind == run_b.loaded().kind,
                  "{} is of kind {}, {} of kind {}: their scores are different things", out_a,

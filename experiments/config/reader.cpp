@@ -156,7 +156,7 @@ std::vector<Mistake> YamlReader::read_cell(const YamlNode& base, const SweepTabl
                                            std::size_t cell, SweepSlot& slot) const {
   YamlDocument variant;
   variant.root = base;
-  for (std::size_t i = 0; i < table.paths.size(); ++i) {
+  for (const std::size_t i : table.order) {
     const YamlNode* value = table.values[cell][i];
     if (value != nullptr) set_value(variant, table.paths[i], *value, table.places[i]);
   }

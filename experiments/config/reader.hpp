@@ -103,8 +103,18 @@ struct SweepTable {
   std::vector<std::string> paths;
   std::vector<SourcePosition> places;                ///< of the paths
   std::vector<std::vector<const YamlNode*>> values;  ///< of every cell; null: its own
+  /// Places of the paths in the order in which their values are put in: a section before what lies
+  /// in it.
+  std::vector<std::size_t> order;
   SweepCells cells() const;
 };
+
+/// SweepTable::order of these paths.
+std::vector<std::size_t> outer_first(const std::vector<std::string>& paths);
+
+/// An axis below another one whose value states its key, and what stands in the list already of
+/// the last `included` cells.
+std::vector<Mistake> mistakes_of(const SweepTable& table, std::size_t included);
 
 /// Reads {product, zip, exclude, include}; mistakes are appended, and with one of them the table is
 /// empty. The nodes must outlive the table.

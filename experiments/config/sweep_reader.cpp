@@ -57,6 +57,8 @@ class Reader {
     add_points();
     if (good() && table_.values.empty())
       mistake(node_.position, "the sweep has no cells left: exclude fewer of them");
+    if (good())
+      std::ranges::move(mistakes_of(table_, include_.size()), std::back_inserter(mistakes_));
     return good() ? std::move(table_) : SweepTable{};
   }
 
@@ -202,6 +204,7 @@ class Reader {
         if (column_of(member.key) == table_.paths.size()) add_column(member);
       }
     }
+    table_.order = outer_first(table_.paths);
   }
 
   void add_column(const YamlNode::Member& member) {
@@ -278,18 +281,6 @@ class Reader {
 };
 
 }  // namespace
-
-SweepCells SweepTable::cells() const {
-  SweepCells result{paths, {}};
-  for (const std::vector<const YamlNode*>& cell : values) {
-    std::vector<std::string> texts;
-    for (const YamlNode* value : cell) {
-      texts.push_back(value == nullptr ? std::string() : flow_text(*value));
-    }
-    result.values.push_back(std::move(texts));
-  }
-  return result;
-}
 
 SweepTable read_sweep(const YamlNode& node, std::string_view key, std::vector<Mistake>& mistakes) {
   return Reader(node, key, mistakes).read();

@@ -38,7 +38,7 @@ class StudyExperiment final : public Experiment {
 
 // Every kind of experiment as a list of tasks: with a section "sweep" it is run once a cell.
 
-/// What one run of a list leaves: the numbers of its tables.
+/// What one run of a list leaves: the numbers of its tables, but not what it took.
 struct RunOutcome {
   std::string failure;  ///< why there are none; empty: there are
   /// "levels.f_c.std": table, first cell of the row (where there are several rows), column.

@@ -33,7 +33,7 @@ void add_numbers(const report::Table& table, RunOutcome& outcome) {
     for (std::size_t c = is_one ? 0 : 1; c < row.size(); ++c) {
       const auto* number = std::get_if<double>(&row[c].value);
       const auto* count = std::get_if<std::int64_t>(&row[c].value);
-      if (number == nullptr && count == nullptr) continue;
+      if ((number == nullptr && count == nullptr) || table.columns[c].is_effort) continue;
       std::string name = prefix + table.columns[c].key, unit = unit_of(table, row, c);
       if (!unit.empty() && unit != "1") outcome.units.emplace_back(name, std::move(unit));
       outcome.numbers.emplace_back(std::move(name),

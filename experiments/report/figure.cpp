@@ -84,8 +84,12 @@ struct ColumnGroup {
   std::vector<CsvColumn> columns;
 };
 
-std::string name_of(const Panel& panel, const Series& series) {
-  if (panel.title.empty()) return series.label.empty() ? panel.y.label : series.label;
+// several: panels, whose series may have the same labels.
+std::string name_of(const Panel& panel, const Series& series, bool several) {
+  if (panel.title.empty()) {
+    if (series.label.empty()) return panel.y.label;
+    return several ? panel.y.label + ": " + series.label : series.label;
+  }
   return series.label.empty() ? panel.title : panel.title + ": " + series.label;
 }
 
@@ -119,13 +123,14 @@ std::vector<CsvColumn> map_columns(const Panel& panel) {
 std::vector<CsvColumn> columns_of(const Figure& figure) {
   std::vector<CsvColumn> columns;
   std::vector<ColumnGroup> groups;
+  const bool several = figure.panels.size() > 1;
   for (const Panel& panel : figure.panels) {
     if (panel.map) columns = map_columns(panel);
     for (const Series* series : shown_series(panel)) {
       ColumnGroup& group = group_for(groups, panel, *series);
       const auto add = [&](const char* suffix, const std::vector<double>& values) {
-        group.columns.push_back(
-            column_of({.label = name_of(panel, *series) + suffix, .unit = panel.y.unit}, values));
+        group.columns.push_back(column_of(
+            {.label = name_of(panel, *series, several) + suffix, .unit = panel.y.unit}, values));
       };
       add("", series->y);
       if (series->y_low.empty()) continue;

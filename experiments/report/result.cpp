@@ -148,7 +148,8 @@ void RowWriter::cell(const ResultField& field, Cell cell) {
   columns.push_back({.key = std::string(field.key),
                      .name = std::string(field.name),
                      .unit = std::string(field.unit),
-                     .format = std::string(field.format)});
+                     .format = std::string(field.format),
+                     .is_effort = field.is_effort});
   cells.push_back(std::move(cell));
 }
 

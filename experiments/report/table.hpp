@@ -41,6 +41,7 @@ struct Column {
   std::string name = {};          ///< heading in the page; empty: the key
   std::string unit = {};          ///< "1" or empty: none
   std::string format = "{:.4g}";  ///< of floating-point numbers in the page (std::format syntax)
+  bool is_effort = false;         ///< ResultField::is_effort
 };
 
 struct Table {
@@ -62,7 +63,7 @@ void check_table(const Table& table);
 std::string cell_text(const Cell& cell, const Column& column);
 
 /// Heading line of "key [unit]", then one line a row; numbers with all their digits, "nan" for a
-/// NaN, an empty field for no value (RFC 4180 quoting).
+/// NaN, an empty field for no value; texts as csv_field() writes them.
 std::string table_csv(const Table& table);
 
 /// Array with one object per row, {"key": value, …}; null for a NaN or no value.

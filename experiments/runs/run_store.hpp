@@ -98,6 +98,8 @@ class FinishedTasks {
   /// Lines whose tasks were not done again, as far as is known.
   const std::vector<JournalDamage>& damages() const { return damages_; }
   JournalReader& reader() const { return *reader_; }
+  /// Results that the journals hold, of whatever settings and programs.
+  std::size_t size() const { return places_.size(); }
 
  private:
   // The 128 bits of a key.

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 namespace modcal {
 namespace {
@@ -42,6 +43,24 @@ nlohmann::json parsed(const std::string& outcome) {
   nlohmann::json object = nlohmann::json::parse(outcome, nullptr, false);
   MODCAL_REQUIRE(object.is_object(), "the stored outcome of a task cannot be read: {}", outcome);
   return object;
+}
+
+// Members that are numbers, then the pairs of the list "numbers".
+std::vector<std::pair<std::string, double>> numbers_of(const std::string& outcome) {
+  std::vector<std::pair<std::string, double>> result;
+  const nlohmann::json object = parsed(outcome);
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_number()) result.emplace_back(name, value.get<double>());
+  }
+  const auto numbers = object.find("numbers");
+  if (numbers == object.end()) return result;
+  for (const auto& number : *numbers) {
+    const bool is_pair = number.is_array() && number.size() >= 2 && number[0].is_string();
+    if (is_pair && number[1].is_number()) {
+      result.emplace_back(number[0].get<std::string>(), number[1].get<double>());
+    }
+  }
+  return result;
 }
 
 }  // namespace
@@ -116,17 +135,26 @@ std::string TaskExperiment::failure_in(const std::string& outcome) const {
   return failure->get<std::string>();
 }
 
+std::size_t TaskOutcomes::records() const {
+  std::set<std::pair<std::uint32_t, std::uint64_t>> records;
+  for (const RecordPlace& place : places_) {
+    if (place.is_known()) records.emplace(place.file, place.offset);
+  }
+  return records.size();
+}
+
 std::optional<double> TaskExperiment::number_in(const std::string& outcome,
                                                 const std::string& name) const {
-  const nlohmann::json object = parsed(outcome);
-  if (object.contains(name) && object[name].is_number()) return object[name].get<double>();
-  const auto numbers = object.find("numbers");
-  if (numbers == object.end()) return std::nullopt;
-  for (const auto& number : *numbers) {
-    const bool is_pair = number.is_array() && number.size() >= 2;
-    if (is_pair && number[0] == name && number[1].is_number()) return number[1].get<double>();
+  for (const auto& [own, value] : numbers_of(outcome)) {
+    if (own == name) return value;
   }
   return std::nullopt;
+}
+
+std::vector<std::string> TaskExperiment::numbers_in(const std::string& outcome) const {
+  std::vector<std::string> names;
+  for (auto& [name, value] : numbers_of(outcome)) names.push_back(std::move(name));
+  return names;
 }
 
 StudyResult TaskExperiment::run(const StudyContext& context) const {

@@ -37,6 +37,8 @@ class TaskOutcomes {
   bool has(std::size_t task) const {
     return finished_ != nullptr ? places_[task].is_known() : kept_[task].has_value();
   }
+  /// Records of the store that are outcomes of its tasks; equal tasks share one.
+  std::size_t records() const;
   /// nullopt: not run yet.
   std::optional<FinishedTask> operator[](std::size_t task) const;
   /// What read(outcome) makes of the outcome of a finished task; the InvalidInput that it throws
@@ -86,6 +88,8 @@ class TaskExperiment : public Experiment {
   virtual std::optional<double> loss_in(const std::string& /*outcome*/) const { return {}; }
   /// A number of an outcome by its name; nullopt where it has none of that name.
   std::optional<double> number_in(const std::string& outcome, const std::string& name) const;
+  /// The names of its numbers.
+  std::vector<std::string> numbers_in(const std::string& outcome) const;
   /// Tables, figures and acceptance of the outcomes there are; nullopt: not run yet.
   virtual StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const = 0;
   /// One task again, with everything drawn and written that can be.

@@ -30,6 +30,8 @@ struct ResultField {
   Shown shown = Shown::kEverywhere;
   /// Left out of JSON where it is empty, and left as it is where JSON does not have it.
   bool optional = false;
+  /// What the work took, which differs from run to run: no part of the numbers of a list.
+  bool is_effort = false;
 };
 
 /// The number where it is finite; a table says nothing in the place of another, JSON null.

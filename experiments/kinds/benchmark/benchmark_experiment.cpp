@@ -38,16 +38,19 @@ BenchmarkLabels BenchmarkExperiment::labels_of(std::size_t task) const {
   const CalibrationOptions& calibration = options_.base.calibration;
   BenchmarkLabels labels{.objective = std::string(calibration.objective.selected())};
   std::vector<std::string> search, condition, seeds;
+  bool has_conditions = false;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const std::string label = short_label(values[i]);
     if (paths[i] == kObjectiveAxis) {
       if (!values[i].empty()) labels.objective = label;
-    } else if (paths[i].starts_with(kMethodPrefix)) {
+    } else if (paths[i].starts_with(kMethodPrefix) && !values[i].empty()) {
       search.push_back(label);
     }
     if (is_seed_axis(paths[i])) {
       seeds.push_back(values[i]);
-    } else if (!paths[i].starts_with(kMethodPrefix) && !values[i].empty()) {
+    } else if (!paths[i].starts_with(kMethodPrefix)) {
+      has_conditions = true;
+      if (values[i].empty()) continue;
       const std::string last = paths[i].substr(paths[i].find_last_of('.') + 1);
       condition.push_back(fmt::format("{} {}", last == "noise_level" ? "noise" : last, label));
     }
@@ -56,7 +59,7 @@ BenchmarkLabels BenchmarkExperiment::labels_of(std::size_t task) const {
     return parts.empty() ? std::move(none) : fmt::format("{}", fmt::join(parts, ", "));
   };
   labels.search = joined(search, std::string(calibration.optimizer.selected()));
-  labels.condition = joined(condition, "the one condition");
+  labels.condition = joined(condition, has_conditions ? "as stated" : "the one condition");
   labels.replicate = joined(seeds, std::to_string(options_.base.inversion.seed));
   return labels;
 }

@@ -32,6 +32,11 @@ int sign_of(const MedianRatio& ratio) {
   return ratio.is_below_one() ? -1 : ratio.is_above_one() ? 1 : 0;
 }
 
+// Of a few draws resampling tells nothing, but none is worse than any.
+int by_estimates(const BenchmarkCell& ours, const BenchmarkCell& theirs) {
+  return static_cast<int>(ours.task < 0) - static_cast<int>(theirs.task < 0);
+}
+
 // −1: ours are smaller beyond doubt, 1: theirs are, 0: nobody knows.
 int compared(const Losses& ours, const Losses& theirs) {
   std::vector<double> a, b;
@@ -113,8 +118,11 @@ void rank(const std::vector<const Losses*>& losses, std::vector<BenchmarkCell*>&
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const int order = medians.empty() ? compared(*losses[i], *losses[j])
-                                        : sign_of(median_ratio(medians[i], medians[j]));
+      int order = by_estimates(*cells[i], *cells[j]);
+      if (order == 0) {
+        order = medians.empty() ? compared(*losses[i], *losses[j])
+                                : sign_of(median_ratio(medians[i], medians[j]));
+      }
       if (order != 0) ++cells[order < 0 ? j : i]->rank;
     }
   }

@@ -255,6 +255,13 @@ std::string contradiction(const CalibrationResult& result) {
         "the data contradict the priors stated, that of {} most ({:.3g} deviations){}",
         found.priors.farthest, found.priors.deviations, remedy_of_prior(found.priors.farthest)));
   }
+  if (found.contradicts_itself()) {
+    reasons.push_back(fmt::format(
+        "the modes found and the law found with them contradict each other ({:.3g} deviations), as "
+        "where the search ends in a false minimum: state f0, B and bow.position nearer to where "
+        "they are, or calibrate a longer part of the record",
+        found.farthest_follower()));
+  }
   if (const auto apart = tuned_apart(found.single)) {
     reasons.push_back(fmt::format(
         "stroke {} is tuned {:+.2g} % from the first, {:.3g} deviations of the two fits: the "

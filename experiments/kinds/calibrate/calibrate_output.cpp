@@ -168,7 +168,7 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
     row({.key = "stop_reason", .name = "ended because"}, name_of(search.stop));
     row({.key = "evaluations"}, search.evaluations);
     row({.key = "loops"}, search.loops);
-    row({.key = "seconds", .unit = "s"}, search.seconds);
+    row({.key = "seconds", .unit = "s", .is_effort = true}, search.seconds);
     row({.key = "objective_initial", .name = "objective, initial"}, known(search.initial_value));
     row({.key = "objective", .name = "objective, final"}, search.value);
     row({.key = "median_relative_error_excited",

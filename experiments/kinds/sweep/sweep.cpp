@@ -21,6 +21,12 @@ bool is_stand_in(ChoiceStatus status) {
          status != ChoiceStatus::kNoParameter;
 }
 
+// Settings of the estimate are told apart; of the scene they are draws of it.
+bool is_method_axis(const std::string& axis) {
+  return axis.starts_with("inversion.") && !axis.starts_with("inversion.estimator") &&
+         !is_seed_axis(axis);
+}
+
 bool is_numbered(const std::string& side) { return side == "1" || side == "2"; }
 
 // Sides that a failed task would have had.
@@ -28,6 +34,16 @@ std::vector<std::string> sides_of(const std::string& estimator) {
   if (estimator == "one_sided") return {"1", "2"};
   if (estimator == "model_based") return {"model"};
   return {estimator};
+}
+
+std::string method_of(const std::vector<std::string>& axes,
+                      const std::vector<std::string>& values) {
+  std::string method;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (!is_method_axis(axes[i])) continue;
+    method += fmt::format(", {}", values[i].empty() ? "as stated" : values[i]);
+  }
+  return method;
 }
 
 void add_draw(const TaskScores& draw, SweepRow& row) {
@@ -146,7 +162,8 @@ std::vector<SweepRow> sweep_rows(const std::vector<SweepTask>& tasks,
   for (const SweepTask& task : tasks) {
     // Percent values are rounded to 1e-9 so that 0.03 and 3 % are one row.
     const double percent = std::round(task.noise_level * 1e11) / 1e9;
-    const auto row_of = [&](const std::string& side) -> SweepRow& {
+    const auto row_of = [&](const std::string& of_record) -> SweepRow& {
+      const std::string side = of_record + task.method;
       SweepRow& row = rows[{side, percent}];
       row.noise_percent = percent;
       row.side = side;
@@ -209,7 +226,8 @@ StudyResult SweepExperiment::sum_up(const TaskOutcomes& outcomes,
       outcomes, result, [&](std::size_t task, TaskOutcome outcome, double /*seconds*/) {
         const InvertOptions cell = options_.cells[task];
         tasks.push_back({task, axis_values(task), cell.observation.measurement.noise_level,
-                         std::string(cell.inversion.estimator.selected()), std::move(outcome)});
+                         std::string(cell.inversion.estimator.selected()),
+                         method_of(axes(), axis_values(task)), std::move(outcome)});
       });
   sum_up_sweep(options_.list, axes(), tasks, context, result);
   return result;

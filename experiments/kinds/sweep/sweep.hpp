@@ -65,10 +65,13 @@ struct SweepTask {
   std::vector<std::string> axis_values;  ///< as written in the file
   double noise_level = 0.0;
   std::string estimator;
+  /// Values on the axes of the inversion but the estimator's, which make rows of their own: ",
+  /// water_level".
+  std::string method;
   TaskOutcome outcome;
 };
 
-/// One row of the table: all draws of one noise level on one side.
+/// One row of the table: all draws of one noise level and method on one side.
 struct SweepRow {
   double noise_percent = 0.0;
   std::string side;

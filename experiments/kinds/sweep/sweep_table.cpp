@@ -268,6 +268,18 @@ report::Figure correlation_figure(const std::string& name, const std::vector<Swe
           .panels = compares_estimators ? comparison_panels(rows) : side_panels(rows)};
 }
 
+// What a row holds of axes that are neither noise, method nor seed; empty: there are none.
+std::string pooled_axes(const std::vector<std::string>& axes) {
+  std::vector<std::string> pooled;
+  std::ranges::copy_if(axes, std::back_inserter(pooled), [](const std::string& axis) {
+    return !axis.starts_with("inversion.") && !axis.ends_with("noise_level") && !is_seed_axis(axis);
+  });
+  if (pooled.empty()) return {};
+  return fmt::format(
+      "A row holds all values of {} together; kind: invert with this sweep has a row of each.",
+      fmt::join(pooled, ", "));
+}
+
 }  // namespace
 
 void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& axes,
@@ -278,10 +290,11 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
     published = read_published(context.folder / options.comparison.table);
   }
   const std::vector<SweepRow> rows = sweep_rows(tasks, published);
-  result.summary = printed_table(rows);
+  const std::string pooled = pooled_axes(axes);
+  result.summary = printed_table(rows) + pooled + (pooled.empty() ? "" : "\n");
   Sample medians;
   for (const SweepRow& row : rows) medians.add(row.correlation.median());
-  result.answer = fmt::format("Median R over the settings: {:.2f}", medians.median());
+  result.answer = fmt::format("Median R over the rows: {:.2f}", medians.median());
   result.blocks.emplace_back(correlation_figure(options.name, rows));
   // Figures of a part are no figures of the whole.
   if (result.pending_tasks == 0) {
@@ -289,7 +302,8 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
     judge_targets(options.targets, rows, result);
   }
   result.blocks.emplace_back(report::table_of(
-      {.id = options.name, .title = "Correlation and water level against noise"}, rows, write_row));
+      {.id = options.name, .title = "Correlation and water level against noise", .caption = pooled},
+      rows, write_row));
   result.end_first_screen();
   result.files.emplace_back("tasks.csv", report::table_csv(task_table(axes, tasks)));
 }

@@ -66,6 +66,25 @@ TEST(SweepReader, TakesPluginsWithTheirOptionsAsValues) {
               ElementsAre("a={type: y}"));
 }
 
+// Else a section would take the place of what the axis before has put into it.
+TEST(SweepReader, PutsASectionInBeforeWhatLiesInIt) {
+  EXPECT_THAT(outer_first({"m.noise", "seed", "m", "m.noise.color"}), ElementsAre(1, 2, 0, 3));
+  EXPECT_THAT(cells("product: {m.noise: [1, 2], m: [{rate: 40}]}"),
+              ElementsAre("m.noise=1 m={rate: 40}", "m.noise=2 m={rate: 40}"));
+  EXPECT_THAT(
+      cells("product: {m.noise: [1, 2], m: [{rate: 40}, {noise: 3}]}"),
+      ElementsAre("1:57: m.noise is an axis of its own: leave it out here, or that axis out"));
+}
+
+// What stands there twice would be a draw that counts twice.
+TEST(SweepReader, RefusesACellThatStandsThereAlready) {
+  EXPECT_THAT(cells("product: {a: [1, 2], b: [3]}\ninclude: [{a: 2, b: 3}]"),
+              ElementsAre("2:14: the cell {a: 2, b: 3} stands in the list already, and its draw "
+                          "would count twice: leave it out"));
+  EXPECT_THAT(cells("include: [{a: 1}, {a: 1}]")[0], HasSubstr("stands in the list already"));
+  EXPECT_THAT(cells("product: {a: [1]}\nexclude: [{a: 1}]\ninclude: [{a: 1}]"), ElementsAre("a=1"));
+}
+
 TEST(SweepReader, NamesMistakesWithTheirPlaces) {
   EXPECT_THAT(cells("zip: [{a: [1, 2], b: [3]}]"),
               ElementsAre("1:19: b has 1 values, a has 2: values that vary together are as many"));

@@ -62,6 +62,18 @@ TEST(BenchmarkSummary, ClaimsNoRankFromAFewDraws) {
   for (const BenchmarkCell& cell : benchmark_cells(grid_of(4, 100.0))) EXPECT_EQ(cell.rank, 1u);
 }
 
+// None is worse than any, however few the draws are.
+TEST(BenchmarkSummary, PutsWhatHasNoResultLast) {
+  BenchmarkGrid grid = grid_of(3, 1.0);
+  for (BenchmarkTask& task : grid.tasks) {
+    if (task.method == 0) task.outcome = {.failure = "needs a gradient"};
+  }
+  const std::vector<BenchmarkCell> cells = benchmark_cells(grid);
+  EXPECT_EQ(cells[0].rank, 3u);
+  EXPECT_EQ(cells[1].rank, 1u);
+  EXPECT_EQ(cells[2].rank, 1u);
+}
+
 TEST(BenchmarkSummary, CountsFailuresAndTheirReasons) {
   const BenchmarkCell cell = benchmark_cells(grid_of(20, 1.0))[2];
   EXPECT_EQ(cell.n, 20u);

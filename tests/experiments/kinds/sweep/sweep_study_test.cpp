@@ -77,6 +77,27 @@ TEST(RunCell, TakesTheModelBasedEstimateForAnEstimator) {
   EXPECT_NE(table.summary.find("model "), std::string::npos);
 }
 
+TaskOutcome outcome_of(double correlation) {
+  return {.sides = {{.side = "1", .scores = {{.correlation = correlation}}}}};
+}
+
+// Two regularizers are two rows; forces of the bow are draws of one, and that is said.
+TEST(SumUpSweep, TellsMethodsApartAndSaysWhatItPools) {
+  SharedWork work;
+  const StudyContext context{.work = work};
+  StudyResult result;
+  sum_up_sweep(
+      {}, {"inversion.regularizer", "scene.bow.normal_force", "seed"},
+      {{.estimator = "one_sided", .method = ", none", .outcome = outcome_of(0.1)},
+       {.task = 1, .estimator = "one_sided", .method = ", tikhonov", .outcome = outcome_of(0.9)}},
+      context, result);
+  EXPECT_NE(result.summary.find("1, none"), std::string::npos) << result.summary;
+  EXPECT_NE(result.summary.find("1, tikhonov"), std::string::npos) << result.summary;
+  EXPECT_NE(result.summary.find("all values of scene.bow.normal_force together"),
+            std::string::npos);
+  EXPECT_EQ(result.summary.find("seed"), std::string::npos);
+}
+
 // Outcomes of a list of three tasks: one done, one failed, one not run yet.
 TaskOutcomes some_outcomes(const StudyContext& context) {
   TaskOutcomes outcomes(3);
