@@ -141,6 +141,11 @@ struct ContinuationResult {
   bool law_holds() const { return law.accepted && !law.priors.contradicted(); }
   /// Of a law that something contradicts nothing is reported but that.
   bool tells_of_law() const { return !frequencies_free || law_holds(); }
+  /// Of the modes identified that follow the law the largest distance from found_law, over what
+  /// their deviations and their scatter about it expect; 0: frequencies are not free.
+  double farthest_follower() const;
+  /// Modes and the law found with them are not of one minimum.
+  bool contradicts_itself() const;
 };
 
 }  // namespace modcal

@@ -230,6 +230,23 @@ FoundLaw FoundLaw::of(const LawPosterior& posterior, const StatedPriors& priors)
       {fundamental * std::sqrt(posterior.covariance(0, 0)), std::sqrt(posterior.covariance(1, 1))}};
 }
 
+double ContinuationResult::farthest_follower() const {
+  double farthest = 0.0;
+  for (std::size_t i = 0; frequencies_free && i < modes.size(); ++i) {
+    const ModeVerdict& mode = modes[i];
+    if (mode.source != ModeSource::kIdentified || mode.tie != LawTie::kFollows) continue;
+    const auto n = static_cast<double>(i + 1);
+    const double stiff = std::sqrt(1.0 + found_law.inharmonicity * n * n);
+    const double expected = std::hypot(mode.deviation, law_width);
+    farthest = std::max(
+        farthest,
+        std::abs(std::log(mode.frequency / (n * found_law.fundamental * stiff))) / expected);
+  }
+  return farthest;
+}
+
+bool ContinuationResult::contradicts_itself() const { return farthest_follower() > kFarFollower; }
+
 void trust_stated_frequencies(const StatedPriors& priors, const Eigen::VectorXd& deviation,
                               std::vector<ModeVerdict>& modes) {
   for (std::size_t n = 0; n < modes.size(); ++n) {

@@ -59,16 +59,7 @@ class Attempt {
     if (!input_.first_law) input_.first_law = result.law;
     result.repeats = shift != 0.0 && same(result.law, *input_.first_law);
     if (options().frequencies && !result.repeats) {
-      const bool accepted = result.law.accepted;
-      const ContinuationResult of_law = result;
-      free_frequencies(input_, {law_, accepted ? law_theta_ : ladder_theta_, accepted}, stroke_,
-                       result);
-      // Damped records have led modes away from where the law, which is nearly right, has them.
-      if (!accepted && result.chi2 > result.law.chi2) {
-        ContinuationResult from_law = of_law;
-        free_frequencies(input_, {law_, law_theta_, true}, stroke_, from_law);
-        if (from_law.chi2 < result.chi2) result = std::move(from_law);
-      }
+      free_frequencies(input_, {law_, law_theta_, ladder_theta_}, stroke_, result);
       leave_out(result);
       report_departures(result.tests, result);
     } else {
@@ -76,7 +67,8 @@ class Attempt {
     }
     result.fits = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     const ScoreTest* cause = first_cause(result.tests);
-    result.right = result.fits && !result.priors.contradicted() && !(cause && cause->refuses());
+    result.right = result.fits && !result.priors.contradicted() && !result.contradicts_itself() &&
+                   !(cause && cause->refuses());
     result.evaluations = stroke_.evaluations();
     result.stages = stroke_.stages();
     return result;

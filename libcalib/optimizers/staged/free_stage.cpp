@@ -16,6 +16,13 @@
 namespace modcal {
 namespace {
 
+// Where the stage starts.
+struct FreeStart {
+  const StringUnknowns& law;
+  const Eigen::VectorXd& theta;  // of the law's unknowns
+  bool from_law = true;          // else the modes come through damped records
+};
+
 class FreeStage {
  public:
   FreeStage(const AttemptInput& input, const FreeStart& start, StrokeFit& stroke,
@@ -222,9 +229,25 @@ class FreeStage {
 
 }  // namespace
 
-void free_frequencies(const AttemptInput& input, const FreeStart& start, StrokeFit& stroke,
+void free_frequencies(const AttemptInput& input, const FreeStarts& starts, StrokeFit& stroke,
                       ContinuationResult& result) {
-  FreeStage(input, start, stroke, result).run();
+  const ContinuationResult of_law = result;
+  const auto from = [&](const Eigen::VectorXd& theta, bool from_law) {
+    ContinuationResult found = of_law;
+    FreeStage(input, {starts.law, theta, from_law}, stroke, found).run();
+    return found;
+  };
+  const bool nearly = of_law.law.accepted || of_law.law.chi2 < kNearlyLaw;
+  if (nearly) {
+    result = from(starts.of_record, true);
+    const bool fits = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    if (of_law.law.accepted || (fits && !result.contradicts_itself())) return;
+  }
+  ContinuationResult of_ladder = from(starts.of_ladder, false);
+  // Damped records have led modes away from where the law has them.
+  if (!nearly && of_ladder.chi2 > of_law.law.chi2) result = from(starts.of_record, true);
+  const bool is_first = !result.frequencies_free;
+  if (is_first || of_ladder.chi2 < result.chi2) result = std::move(of_ladder);
 }
 
 }  // namespace modcal

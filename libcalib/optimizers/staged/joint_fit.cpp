@@ -95,7 +95,8 @@ class JointFit {
           const ScoreTest* cause = first_cause(single.tests);
           return cause && cause->refuses();
         });
-    fit_.right = fit_.fits && !fit_.priors.contradicted() && explained && !tuned_apart(fit_.single);
+    fit_.right = fit_.fits && !fit_.priors.contradicted() && !fit_.contradicts_itself() &&
+                 explained && !tuned_apart(fit_.single);
     if (!unknowns().is_law()) return;
     fit_.law.chi2 = fit_.chi2;
     fit_.law.accepted = fit_.fits;
