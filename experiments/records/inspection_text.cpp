@@ -8,6 +8,7 @@
 #include "libsim/base/units.hpp"
 #include "libsim/model/string_model.hpp"
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/tuning.hpp"
 
 namespace modcal {
 namespace {

@@ -9,6 +9,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/records/band_edge.hpp"
 #include "libsim/records/levels.hpp"
+#include "libsim/records/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -59,7 +60,7 @@ void require_whole_beginning(const ObservationOptions& options, const RecordedSi
                    record.file, *names[late], last[0], end, *names[1 - late]);
     return;
   }
-  if (silent[1 - late] < Clipping::kShortestRun || silent[late] - silent[1 - late] > 1) return;
+  if (silent[1 - late] < kShortestClip || silent[late] - silent[1 - late] > 1) return;
   const double apart = std::abs(1.0 - 2.0 * options.contact.position / options.string.length);
   const std::size_t count =
       std::min(static_cast<std::size_t>(0.4 * apart * period), last.size() - silent[late]);

@@ -42,14 +42,13 @@ class LawLine {
   // off: a few modes that leave the law move neither.
   double robust_variance(double known) {
     constexpr double kHuber = 1.345, kTukey = 4.685;  // 95 % efficient where all follow
-    constexpr int kRounds = 15;
     double variance = std::isnan(known) ? kWidePrior * kWidePrior : known * known;
     rest_ = Eigen::VectorXd::Zero(size());
-    for (int round = 0; round < 2 * kRounds; ++round) {
+    for (int round = 0; round < 2 * kRobustRounds; ++round) {
       fit([&](Index i) {
         const double own = error2(i) + variance;
         const double z = std::abs(rest_[i]) / std::sqrt(own);
-        if (round < kRounds) return std::min(1.0, kHuber / std::max(z, 1e-300)) / own;
+        if (round < kRobustRounds) return std::min(1.0, kHuber / std::max(z, 1e-300)) / own;
         const double left = 1.0 - z * z / (kTukey * kTukey);
         return left > 0.0 ? left * left / own : 0.0;
       });
@@ -137,7 +136,8 @@ class LawLine {
     return *middle;
   }
 
-  static constexpr double kMedian = 0.4549;  // of χ²_1
+  // Fixed by: the median of χ²_1, which is .4549.
+  static constexpr double kMedian = 0.4549;
   const ModeSight& sight_;
   Eigen::MatrixXd slopes_;
   std::vector<bool> taken_;

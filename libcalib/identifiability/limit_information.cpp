@@ -1,5 +1,6 @@
 #include "libcalib/identifiability/limit_information.hpp"
 
+#include "libcalib/identifiability/tuning.hpp"
 #include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/newton_step.hpp"
 #include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
@@ -9,7 +10,6 @@ namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-constexpr std::size_t kLimitRepeats = 4;
 
 // Information under the best weights and the score's variance with the noise in it.
 LikelihoodPoint under_best_weights(const ProjectedLikelihood& clean, const ModelPoint& truth,

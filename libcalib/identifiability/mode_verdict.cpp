@@ -57,7 +57,6 @@ std::string_view name_of(WeakReason reason) {
 }
 
 std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts) {
-  constexpr double kNodeShape = 0.05;
   std::vector<bool> node(basis.size(), true);
   for (const double contact : contacts) {
     const std::vector<double> shape = basis.shape_at(contact);

@@ -129,7 +129,8 @@ constexpr double kIdentifiedSight = 1e-3;
 
 /// How far from where a mode was found another minimum is looked for [1], by how much it has to be
 /// lower, in ln p, over how many bins to either side that is read, and among how many modes to
-/// either side only the one that gains most moves.
+/// either side only the one that gains most moves. As far another place of a mode is looked for in
+/// a pluck (loudest_shift()).
 /// Source: not derived; T, on which none of them changes anything.
 /// Range tried: half to twice each, on T.
 /// Doubled: no f_n moves by 0.01 sd with any of them.
@@ -173,5 +174,28 @@ constexpr int kLeastIdentified = 2;
 /// Doubled: as it is.
 /// Halved: as it is.
 constexpr double kFarFollower = 4.0;
+
+/// Rounds of weights by which the spread about the law is found, by Huber's weights and then as
+/// many by Tukey's.
+/// Source: not derived; nothing tests whether the weights have settled.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr int kRobustRounds = 15;
+
+/// Draws of noise in the place of the record, by whose mean the noise in the variance of the scores
+/// is told in a limit.
+/// Source: not derived; each costs an evaluation of the whole record.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kLimitRepeats = 4;
+
+/// Shape at every contact |φ(x_c)| below which a mode stands in a node [1].
+/// Source: a twentieth of the largest shape drives a mode with 1/400 of its power.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kNodeShape = 0.05;
 
 }  // namespace modcal

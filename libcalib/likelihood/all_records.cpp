@@ -3,15 +3,13 @@
 #include <cmath>
 #include <numeric>
 
-namespace modcal {
+#include "libcalib/likelihood/tuning.hpp"
 
-namespace {
-constexpr std::size_t kRecordsRepeats = 3;
-}
+namespace modcal {
 
 Eigen::MatrixXd StrokeLikelihood::noise_information(const ModelPoint& point,
                                                     const LikelihoodColumns& columns) const {
-  return weighted_.noise_information(point, columns, kRecordsRepeats);
+  return weighted_.noise_information(point, columns, kNoiseRepeats);
 }
 
 LikelihoodPoint StrokeLikelihood::unweighted(const ModelPoint& point,

@@ -32,8 +32,6 @@ class Windows {
   std::vector<double> cumulative_;
 };
 
-constexpr std::size_t kWeightRepeats = 2;
-
 // J_k A⁻¹ J_kᴴ of every bin, A = LLᵀ scaled to a unit diagonal.
 class Shares {
  public:

@@ -4,14 +4,12 @@
 #include <cassert>
 
 #include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libcalib/likelihood/tuning.hpp"
 #include "libsim/base/kernels/column_products.hpp"
 #include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr std::size_t kChunks = 8;
-constexpr std::size_t kSmallRecord = 16;  // blocks: below, threads cost more than they save
 
 using Index = Eigen::Index;
 
@@ -87,7 +85,7 @@ LikelihoodEvaluation::Arrays& LikelihoodEvaluation::spare() {
 }
 
 std::size_t LikelihoodEvaluation::chunks() const {
-  return blocks_.size() < kSmallRecord ? 1 : kChunks;
+  return blocks_.size() < kSmallRecordBlocks ? 1 : kEvaluationChunks;
 }
 
 void LikelihoodEvaluation::for_blocks(

@@ -4,14 +4,13 @@
 #include <cassert>
 
 #include "libcalib/likelihood/likelihood_work.hpp"
+#include "libcalib/likelihood/tuning.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
 
-// Beyond, all columns cost no more (benchmarks/measured/studies.md).
-constexpr std::size_t kMostRows = 6;
 static_assert(kMostRows <= kSharedColumns && kMostRows <= kDecayColumns);
 
 // What add_mode_slopes() sums of one block and column.

@@ -65,4 +65,51 @@ constexpr std::size_t kNoiseBins = 3;
 /// Halved: as it is.
 constexpr double kPriorShare = 0.1;
 
+/// Draws of noise in the place of the record, by whose mean the information that noise alone feigns
+/// is told (noise_information()).
+/// Source: not derived; each costs an evaluation of the whole record.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kNoiseRepeats = 3;
+
+/// The same for the weights of the bins: a mean over many bins needs fewer.
+/// Source: not derived; each costs an evaluation of the whole record.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kWeightRepeats = 2;
+
+/// Chunks of blocks that an evaluation is parted in, and blocks of a record below which it is one
+/// chunk. Their number depends on the record alone, so that the bits do not depend on the threads.
+/// Source: up to eight threads find work; below sixteen blocks threads cost more than they save.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kEvaluationChunks = 8;
+constexpr std::size_t kSmallRecordBlocks = 16;
+
+/// Most rows of the information that are found by themselves: beyond, all columns cost no more.
+/// Source: skipping_benchmark (benchmarks/measured/studies.md): 1 to 6 rows take 1.6, 2.2, 2.8,
+/// 3.3, 3.9 and 4.5 ms, all 52 rows 6.0 ms.
+/// Range tried: 1 to 6.
+/// Doubled: not possible, the kernels hold 8 columns.
+/// Halved: not tried.
+constexpr std::size_t kMostRows = 6;
+
+/// What is added to the scaled normal matrix of the amplitudes of a pluck, of its unit diagonal:
+/// modes that are alike leave it singular.
+/// Source: not derived; far above a double's rounding.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kPluckRidge = 1e-9;
+
+/// Bins to either side of a mode from which the power of a pluck about it is read.
+/// Source: as many as kNeighborHalfBand.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kPluckHalfBand = 128;
+
 }  // namespace modcal

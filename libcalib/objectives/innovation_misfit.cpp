@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcalib/objectives/tuning.hpp"
 #include "libinverse/observer/innovation_fit.hpp"
 #include "libinverse/observer/model_based_estimator.hpp"
 #include "libinverse/observer/observer_runs.hpp"
@@ -21,9 +22,6 @@ std::vector<double> samples_of(const CalibrationData& data, End end) {
   return RealFft(data.samples).inverse(data.reaction(end));
 }
 
-// What a shift in time makes up at the end of a record fades as 1/n² with the distance n from it.
-constexpr double kFaded = 16.0;
-
 // Samples that no delay within the bounds brings to the end of the record.
 std::size_t kept_samples(const CalibrationData& data, const ParameterSet& parameters) {
   double longest = std::abs(parameters.initial().sensors.delay);
@@ -34,7 +32,7 @@ std::size_t kept_samples(const CalibrationData& data, const ParameterSet& parame
     longest = std::max({longest, std::abs(variable.lower), std::abs(variable.upper)});
   }
   if (longest == 0.0) return data.samples;
-  const double lost = std::ceil(longest * data.sample_rate) + kFaded;
+  const double lost = std::ceil(longest * data.sample_rate) + kShiftFaded;
   MODCAL_REQUIRE(2.0 * lost < static_cast<double>(data.samples),
                  "a delay of up to {:g} s leaves nothing of a record of {} samples: narrow its "
                  "range or take a longer record",

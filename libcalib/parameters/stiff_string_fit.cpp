@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "libcalib/parameters/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/result_visitor.hpp"
 #include "libsim/model/string_model.hpp"
@@ -78,9 +79,8 @@ Eigen::MatrixX2d jacobian(const Lines& lines, const Law& law) {
 }
 
 void refine(const Lines& lines, Law& law, StiffStringFit& fit) {
-  constexpr std::size_t kMaxSteps = 50;
   double cost = residuals(lines, law).squaredNorm();
-  while (fit.iterations < kMaxSteps && !fit.converged) {
+  while (fit.iterations < kLineFitSteps && !fit.converged) {
     ++fit.iterations;
     const Law step = jacobian(lines, law).colPivHouseholderQr().solve(residuals(lines, law)).eval();
     double share = 1.0;

@@ -7,16 +7,13 @@
 #include <iterator>
 
 #include "libinverse/joint/joint_kernels.hpp"
+#include "libinverse/joint/tuning.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
-constexpr std::size_t kCellsPerOctave = 16;
 constexpr std::size_t kCells = 64 * kCellsPerOctave;
-constexpr double kLowestOctave = -40.0;  // of g
-constexpr double kLowestParameterOctave = -64.0;
-constexpr std::size_t kParameterOctaves = 80;
 
 // Adds {m, power, solution, 0} to the two cells nearest to g > 0. What lies beyond the cells counts
 // as the first or last of them: kept or lost at every λ.

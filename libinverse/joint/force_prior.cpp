@@ -77,6 +77,7 @@ void inner_means(std::span<const double> in, std::span<double> out, std::size_t 
 }
 
 void constant_box_mean(std::span<const double> in, std::span<double> out, std::size_t half) {
+  // Fixed by: additions under way at once; every window has its own sum whatever their number.
   constexpr std::size_t kChains = 4;
   const std::size_t n = in.size(), width = 2 * half + 1;
   const std::size_t blocks = n / width - 1;  // that have a next one
@@ -147,7 +148,8 @@ JumpPrior::JumpPrior(const Options& options) : corner_(options.corner) {
 }
 
 void JumpPrior::do_shape(const PriorGrid& grid, std::span<double> variance) const {
-  // sin² x = (1 − cos 2x)/2, cosines of sums from those of 64 places and of 64 steps within.
+  // sin² x = (1 − cos 2x)/2, cosines of sums from those of places and of steps within.
+  // Fixed by: length of two arrays; the sums of angles hold for any.
   constexpr std::size_t kBlock = 64;
   const double step = 2.0 * std::numbers::pi / static_cast<double>(grid.samples);
   std::array<double, kBlock> cosine, sine;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "libinverse/joint/joint_kernels.hpp"
+#include "libinverse/joint/tuning.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -166,6 +167,10 @@ JointInversion::SidePowers JointInversion::require_record(const ReactionPair& re
     throw_invalid_input("the square of reaction {} overflows: check the calibration factor", r + 1);
   }
   return powers;
+}
+
+double JointInversion::contradiction() const {
+  return model_.truncation == Truncation::kTransient ? kUnknownEndsContradict : kSidesContradict;
 }
 
 std::size_t JointInversion::samples_before_arrival(std::size_t side) const {

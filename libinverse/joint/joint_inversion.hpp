@@ -128,16 +128,9 @@ class JointInversion {
   JointInversion(const ModalBasis& basis, double contact, std::size_t samples, double sample_rate,
                  const JointModel& model, std::size_t points = 100);
 
-  /// Mean misfit of the sides from which on it widens the deviations. On bowed strings it is 6 at
-  /// 1 % of noise and 80 at 0.1 %, from few bins beside resonances: what wraps around, an error of
-  /// the record's beginning that the rest of the band need not pay for.
-  static constexpr double kContradiction = 100.0;
-  /// The same from which on it is worth a warning. Unknown ends leave nothing of the wrap: what is
-  /// left is the model's, and always widens the deviations; of the true strings of
-  /// benchmarks/truth its mean is 0.01 to 1.4, of one 0.2 % too high 1.4 to 11.
-  double contradiction() const {
-    return model_.truncation == Truncation::kTransient ? 1.5 : kContradiction;
-  }
+  /// Mean misfit of the sides from which on it is worth a warning. Unknown ends leave nothing of
+  /// the wrap: what is left is the model's, and always widens the deviations.
+  double contradiction() const;
 
   std::size_t samples() const { return fft_.length(); }
   double sample_rate() const { return sample_rate_; }

@@ -202,6 +202,7 @@ double SpreadPairs(Values g, Values reduced, Values solution, double lowest, dou
                    std::span<std::array<double, 4>> sets) {
   assert(reduced.size() == g.size() && solution.size() == g.size() && sets.size() % 2 == 0);
   const std::size_t bins = g.size(), cells = sets.size() / 2;
+  // Fixed by: length of an array of whole vectors; bins are added in the same order for any.
   constexpr std::size_t kBlock = 64;
   const Lanes d;
   HWY_ALIGN double place[kBlock];

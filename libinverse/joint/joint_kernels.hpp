@@ -18,6 +18,7 @@ using SideSpectra = std::array<std::vector<Complex>, 2>;
 using CellColumns = std::array<const double*, 3>;
 
 /// Cells come in whole blocks, for every width of vectors.
+/// Fixed by: doubles in the widest vector in use.
 inline constexpr std::size_t kCellBlock = 8;
 
 /// The loops of one instruction set. Spans of one call have one length.

@@ -10,13 +10,6 @@
 namespace modcal {
 namespace {
 
-constexpr std::size_t kSegment = 4096;
-constexpr std::size_t kMostSegments = 8;
-constexpr std::size_t kFewestBins = 8;
-constexpr double kSupposedShare = 0.01;
-// The cross relation of clean data stops at rounding, not at 0.
-constexpr double kLeastShare = 1e-20;
-
 double power_of(Complex value) { return value.real() * value.real() + value.imag() * value.imag(); }
 
 }  // namespace
@@ -24,7 +17,7 @@ double power_of(Complex value) { return value.real() * value.real() + value.imag
 SensorNoise::SensorNoise(const ModalBasis& basis, double contact, std::size_t samples,
                          double sample_rate, const StringSupport& support,
                          const SensorPair& sensors)
-    : fft_(std::clamp<std::size_t>(samples, 1, kSegment)), samples_(samples) {
+    : fft_(std::clamp<std::size_t>(samples, 1, kNoiseSegment)), samples_(samples) {
   const std::size_t length = fft_.length();
   window_.resize(length);
   for (std::size_t j = 0; j < length; ++j) {
@@ -61,15 +54,15 @@ void SensorNoise::transform(std::span<const double> segment, Workspace& workspac
 SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace& workspace) const {
   const bool both = !reactions[0].empty() && !reactions[1].empty();
   SensorNoiseLevel level;
-  if (last_ < first_ + kFewestBins) {
+  if (last_ < first_ + kFewestSegmentBins) {
     for (std::size_t r = 0; r < 2; ++r) {
-      if (!reactions[r].empty()) level.rms[r] = kSupposedShare * standard_deviation(reactions[r]);
+      if (!reactions[r].empty()) level.rms[r] = kSupposedNoise * standard_deviation(reactions[r]);
     }
     return level;
   }
   level.measured = true;
   const std::size_t length = fft_.length();
-  const std::size_t segments = std::clamp<std::size_t>(samples_ / length, 1, kMostSegments);
+  const std::size_t segments = std::clamp<std::size_t>(samples_ / length, 1, kMostNoiseSegments);
   std::array<double, 2> power = {0.0, 0.0};
   // Terms of |X_1 H_2 − X_2 H_1|² and of what noise alone would put there.
   double cross = 0.0, of_side[2] = {0.0, 0.0};
@@ -94,7 +87,7 @@ SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace&
   const double terms = static_cast<double>((last_ - first_) * segments) * window_power_;
   for (double& value : power) value /= terms;
   const double expected = (of_side[0] * power[0] + of_side[1] * power[1]) * window_power_;
-  if (both && expected > 0.0) level.noise_share = std::clamp(cross / expected, kLeastShare, 1.0);
+  if (both && expected > 0.0) level.noise_share = std::clamp(cross / expected, kCleanShare, 1.0);
   for (std::size_t r = 0; r < 2; ++r) level.rms[r] = std::sqrt(power[r] * level.noise_share);
   return level;
 }

@@ -57,7 +57,7 @@ void JointInversion::compare_sides(const Weights& weights, const JointMethod& me
         static_cast<double>(count);
   }
   const bool contradict =
-      model_.truncation == Truncation::kTransient || !(result.misfit < kContradiction);
+      model_.truncation == Truncation::kTransient || !(result.misfit < kSidesContradict);
   const double half = std::max(4.0, 0.25 * kMisfitWidth / grid_.bin_width());
   if (!contradict) workspace.side_error.clear();
   // What the noise of the offsets, too, does not put there, in units of the noise.

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "libinverse/modes/damped_sinusoid_problem.hpp"
+#include "libinverse/modes/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/stop_scope.hpp"
@@ -29,8 +30,7 @@ VectorXd variances_of(const Problem& problem, const Problem::State& state) {
       (state.residual + state.basis * state.coefficients.topRows(2 * problem.poles()))
           .colwise()
           .squaredNorm();
-  constexpr double kRounding = 1e-30;
-  return variances.cwiseMax(kRounding * data / static_cast<double>(problem.samples()));
+  return variances.cwiseMax(kRoundedVariance * data / static_cast<double>(problem.samples()));
 }
 
 double cost_of(const Problem::State& state, const VectorXd& variances) {
@@ -179,9 +179,8 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
     const VectorXd deviations = step.whole()->covariance.diagonal().cwiseSqrt();
     const double size = solution.cwiseQuotient(deviations).lpNorm<Eigen::Infinity>();
     // Without noise deviations are rounding, and so are the last steps.
-    constexpr double kRounding = 1e-12;
     const bool rounding =
-        solution.lpNorm<Eigen::Infinity>() <= kRounding * state.poles.lpNorm<Eigen::Infinity>();
+        solution.lpNorm<Eigen::Infinity>() <= kRoundedStep * state.poles.lpNorm<Eigen::Infinity>();
     const VectorXd before = state.poles;
     const bool fell = descend(problem, state, step, variances, damping);
     // A pole at its bound does not follow its step.

@@ -10,15 +10,13 @@
 namespace modcal {
 namespace {
 
-constexpr double kAttenuation = 80.0;  // dB
-
 // Windowed-sinc low-pass between two edges given as fractions of the sample rate.
 std::vector<double> low_pass(double pass, double stop) {
   constexpr double pi = std::numbers::pi;
   const double width = 2.0 * pi * (stop - pass);
-  const auto half =
-      static_cast<std::ptrdiff_t>(std::ceil((kAttenuation - 7.95) / (2.285 * width) / 2.0));
-  const double beta = 0.1102 * (kAttenuation - 8.7);
+  const auto half = static_cast<std::ptrdiff_t>(
+      std::ceil((kDecimatorAttenuation - 7.95) / (2.285 * width) / 2.0));
+  const double beta = 0.1102 * (kDecimatorAttenuation - 8.7);
   const double cutoff = pass + stop;  // twice the middle of the transition
   std::vector<double> taps;
   double sum = 0.0;

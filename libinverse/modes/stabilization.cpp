@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libinverse/modes/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -91,9 +92,8 @@ EigensystemRealization::EigensystemRealization(const DecayRecord& record, std::s
 std::vector<DecayPole> EigensystemRealization::poles(std::size_t order) const {
   MODCAL_REQUIRE(order >= 1 && order <= highest_order(), "order {} must lie in 1 … {}", order,
                  highest_order());
-  constexpr double kNothing = 1e-14;
   auto n = static_cast<Eigen::Index>(order);
-  while (n > 0 && !(sigma_[n - 1] > kNothing * sigma_[0])) --n;
+  while (n > 0 && !(sigma_[n - 1] > kNoSingularValue * sigma_[0])) --n;
   std::vector<DecayPole> found;
   if (n == 0) return found;
   const Eigen::VectorXd root = sigma_.head(n).cwiseSqrt().cwiseInverse();

@@ -96,4 +96,34 @@ inline constexpr double kMainsHalfWidth = 0.02;
 /// Halved: not tried.
 inline constexpr double kOneShape = 0.98, kOneShapeOfTwo = 0.995;
 
+/// Least variance of the noise, over the mean square of the data.
+/// Source: rounding of a double squared is 5e-32.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+inline constexpr double kRoundedVariance = 1e-30;
+
+/// Step over the largest pole below which it is rounding, and the last one.
+/// Source: without noise the deviations are rounding, too, and no measure of a step.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+inline constexpr double kRoundedStep = 1e-12;
+
+/// Attenuation [dB] of what folds back where a decay is decimated, by Kaiser's formula for the
+/// length of the filter.
+/// Source: not derived; what folds back is a ten-thousandth.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+inline constexpr double kDecimatorAttenuation = 80.0;
+
+/// Singular value over the largest one below which it is rounding, so that the order of the
+/// realization is less than asked.
+/// Source: some tens of a double's rounding.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+inline constexpr double kNoSingularValue = 1e-14;
+
 }  // namespace modcal

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -90,7 +91,7 @@ namespace {
 // z of the log-likelihood that `best` has ahead of `other`, block by block.
 double vuong_distance(const FrictionCandidate& best, const FrictionCandidate& other) {
   std::vector<double> ahead;
-  const auto samples = static_cast<double>(2 * kBlock);
+  const auto samples = static_cast<double>(2 * kGainBlock);
   for (std::size_t b = 0; b < std::min(best.block_cost.size(), other.block_cost.size()); ++b) {
     ahead.push_back(0.5 * (samples * std::log(other.misfit / best.misfit) +
                            other.block_cost[b] / other.misfit - best.block_cost[b] / best.misfit));
@@ -140,8 +141,6 @@ FrictionCandidate judge_friction_law(const ObserverRuns& runs, const ParameterSp
 std::vector<FrictionCell> friction_curve(std::span<const double> velocity,
                                          std::span<const double> force, double bow_velocity,
                                          std::size_t cells) {
-  constexpr double kLeastSlip = 0.02;
-  constexpr std::size_t kLeastSamples = 5;
   MODCAL_REQUIRE(
       velocity.size() == force.size() && !velocity.empty(),
       "{} velocities and {} forces: a friction curve needs as many of each, at least one",
@@ -155,14 +154,14 @@ std::vector<FrictionCell> friction_curve(std::span<const double> velocity,
   std::vector<std::vector<double>> forces(cells);
   for (std::size_t k = 0; k < velocity.size() && largest > 0.0; ++k) {
     const double slip = direction * (bow_velocity - velocity[k]);
-    if (slip < kLeastSlip * largest) continue;
+    if (slip < kLeastSlipShare * largest) continue;
     const auto cell = static_cast<std::size_t>(slip / largest * static_cast<double>(cells));
     forces[std::min(cell, cells - 1)].push_back(direction * force[k]);
   }
   std::vector<FrictionCell> curve;
   const double width = largest / static_cast<double>(cells);
   for (std::size_t i = 0; i < cells; ++i) {
-    if (forces[i].size() < kLeastSamples) continue;
+    if (forces[i].size() < kLeastCellSamples) continue;
     curve.push_back({.speed = (static_cast<double>(i) + 0.5) * width,
                      .median = quantile(forces[i], 0.5),
                      .low = quantile(forces[i], 0.05),

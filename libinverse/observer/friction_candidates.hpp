@@ -24,11 +24,8 @@ struct FrictionCandidate {
   /// sd(d_b), d_b the log-likelihood that the other law has ahead in a block. Below kToldApart the
   /// record does not tell the two apart.
   double distance = 0.0;
-  std::vector<double> block_cost;  ///< Σ 2ρ(ν/s) over each block of kBlock samples
+  std::vector<double> block_cost;  ///< Σ 2ρ(ν/s) over each block of kGainBlock samples
 };
-
-/// Standard deviations from which two laws count as told apart.
-inline constexpr double kToldApart = 3.0;
 
 /// Sets the distances and puts the laws in order: the named one first, which is the one with the
 /// fewest parameters (then the least BIC) among those that cannot be told from the least BIC, the

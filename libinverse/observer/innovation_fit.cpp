@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -219,11 +220,11 @@ class Search {
     alive[0].state = observer_.initial_state();
     std::vector<std::vector<Step>> history;
     const std::size_t samples = record_.samples();
-    for (std::size_t first = 0; first < samples; first += kBlock) {
+    for (std::size_t first = 0; first < samples; first += kGainBlock) {
       std::vector<Candidate> next(alive.size() * gains_.size());
       for_each_task(next.size(), [&](std::size_t i) {
         next[i] = advanced(alive[i / gains_.size()], gains_[i % gains_.size()], first,
-                           std::min(samples, first + kBlock));
+                           std::min(samples, first + kGainBlock));
       });
       std::vector<std::size_t> order(next.size());
       std::iota(order.begin(), order.end(), std::size_t{0});
@@ -246,7 +247,7 @@ class Search {
   Candidate advanced(const Candidate& from, std::size_t gain, std::size_t first,
                      std::size_t last) const {
     Candidate result = from;
-    std::array<double, kBlock> left, right;
+    std::array<double, kGainBlock> left, right;
     ObserverSignals outputs;
     outputs.innovation = {left.data(), right.data()};
     observer_.run(gain, first, last, result.state, outputs, first);

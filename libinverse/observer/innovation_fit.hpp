@@ -30,9 +30,9 @@ struct FitOutcome {
 FitOutcome fit_innovations(const ObserverRuns& runs, const ParameterSpace& space,
                            const GainSchedule& schedule, const FitLimits& limits);
 
-/// Beam search: over blocks of kBlock samples four survivors are run on with every listed gain, the
-/// cost ← 0.9 cost + Σ (ν/s)² keeps the best. `gains`: numbers in the list of `runs`. Returns the
-/// path of the best survivor. Same bits for any number of threads.
+/// Beam search: over blocks of kGainBlock samples four survivors are run on with every listed gain,
+/// the cost ← 0.9 cost + Σ (ν/s)² keeps the best. `gains`: numbers in the list of `runs`. Returns
+/// the path of the best survivor. Same bits for any number of threads.
 GainSchedule search_gains(const ObserverRuns& runs, const ObserverParameters& parameters,
                           std::span<const std::size_t> gains);
 

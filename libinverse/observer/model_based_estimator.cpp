@@ -10,6 +10,7 @@
 
 #include "libinverse/observer/innovation_fit.hpp"
 #include "libinverse/observer/model_check.hpp"
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"
@@ -26,13 +27,7 @@ namespace {
 constexpr std::array kForceNoise = {0.075, 0.025, 0.0125, 0.0075, 0.0025};
 constexpr std::size_t kWide = 0, kMiddle = 1, kNarrow = 2, kTrusting = 4;
 constexpr std::array<std::size_t, 4> kBeam = {0, 1, 3, 4};
-constexpr std::size_t kNoiseDraws = 16;  // the deviation of the motion is known to 1/√32
-// Fitted parameters are off, too. The formal covariance of the fit is far too small (its
-// innovations answer chaotically); without this factor the 95 % bands of records of 0.2 and 1 s at
-// 2 and 5 % noise hold the truth 83 to 88 % of the time.
-constexpr double kParameterShare = 1.4;
 constexpr std::uint64_t kNoiseSeed = 0x6f627376;  // fixed: the result depends on the record alone
-constexpr double kQuietNoise = 0.015;  // noise over signal below which a narrower gain pays
 
 // Samples of a signal without content above half the rate from its means m_k over [t_k, t_{k+1}]:
 // M = F e^{iωT/2} sin(ωT/2)/(ωT/2).

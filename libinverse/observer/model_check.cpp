@@ -7,6 +7,7 @@
 
 #include "libinverse/invert.hpp"
 #include "libinverse/joint/joint_estimators.hpp"
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libinverse/observer/tuning.hpp"
+#include "libinverse/waves/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -15,33 +17,29 @@ namespace {
 // 1 + 2 (2/3)² + 2 (1/6)².
 constexpr double kHannSpread = 35.0 / 18.0;
 
-constexpr double kWeight = 2.0;     // σT
-constexpr double kTransient = 0.3;  // share of the record before steady motion
-constexpr std::size_t kHistogram = 200;
-
 std::vector<double> unweighted(const RealFft& fft, std::vector<Complex> spectrum) {
   std::vector<double> samples = fft.inverse(std::move(spectrum));
   const auto count = static_cast<double>(samples.size());
   for (std::size_t j = 0; j < samples.size(); ++j) {
-    samples[j] *= std::exp(kWeight * static_cast<double>(j) / count);
+    samples[j] *= std::exp(kContourWeight * static_cast<double>(j) / count);
   }
   return samples;
 }
 
 std::vector<double> after_transient(const std::vector<double>& x) {
-  const auto first = static_cast<std::ptrdiff_t>(kTransient * static_cast<double>(x.size()));
+  const auto first = static_cast<std::ptrdiff_t>(kBeforeSteady * static_cast<double>(x.size()));
   return {x.begin() + first, x.end()};
 }
 
-// Middle of the fullest of 200 equal cells between the 0.2 % and 99.8 % quantiles.
+// Middle of the fullest of equal cells between the 0.2 % and 99.8 % quantiles.
 double most_frequent(const std::vector<double>& values) {
   const double low = quantile(values, 0.002), high = quantile(values, 0.998);
   if (!(high > low)) return low;
-  const double width = (high - low) / static_cast<double>(kHistogram);
-  std::vector<std::size_t> count(kHistogram, 0);
+  const double width = (high - low) / static_cast<double>(kHistogramCells);
+  std::vector<std::size_t> count(kHistogramCells, 0);
   for (const double value : values) {
     if (value < low || value >= high) continue;
-    ++count[std::min(kHistogram - 1, static_cast<std::size_t>((value - low) / width))];
+    ++count[std::min(kHistogramCells - 1, static_cast<std::size_t>((value - low) / width))];
   }
   const auto fullest = std::max_element(count.begin(), count.end()) - count.begin();
   return low + (static_cast<double>(fullest) + 0.5) * width;
@@ -57,11 +55,11 @@ std::vector<double> noise_deviation(const std::vector<double>& precision, std::s
   }
   const auto samples = static_cast<double>(count);
   for (std::size_t j = 0; j < count; ++j) {
-    power += std::exp(-2.0 * kWeight * static_cast<double>(j) / samples);
+    power += std::exp(-2.0 * kContourWeight * static_cast<double>(j) / samples);
   }
   std::vector<double> deviation(count, std::sqrt(variance * power) / samples);
   for (std::size_t j = 0; j < count; ++j) {
-    deviation[j] *= std::exp(kWeight * static_cast<double>(j) / samples);
+    deviation[j] *= std::exp(kContourWeight * static_cast<double>(j) / samples);
   }
   return deviation;
 }
@@ -171,13 +169,8 @@ double silent_deviation(const ObservedRecord& record, End end, double bow_veloci
 }
 
 double offset_deviation(const ObservedRecord& record, int r) {
-  // A finite number of modes ripples ahead of the first wave. The prior of the offsets grants it
-  // this share of the reaction's deviation, less than a string of few modes asks for
-  // (silent_ripple): the observer knows the ripple, and a tight prior keeps friction forces and
-  // offsets from shifting together.
-  constexpr double kRipple = 0.003;
   const double noise = record.noise[r] / std::sqrt(static_cast<double>(record.silent[r]));
-  return std::hypot(noise, kRipple * standard_deviation(record.reaction[r]));
+  return std::hypot(noise, kRippleShare * standard_deviation(record.reaction[r]));
 }
 
 void negate(std::vector<double>& samples) {
@@ -195,7 +188,7 @@ void negate(ObservedRecord& record) {
 LinearEstimate linear_estimate(const ObservedRecord& record) {
   const std::size_t count = record.samples();
   FrequencyGrid grid = FrequencyGrid::of_record(count, record.sample_rate);
-  grid.sigma = kWeight * record.sample_rate / static_cast<double>(count);
+  grid.sigma = kContourWeight * record.sample_rate / static_cast<double>(count);
   const RealFft fft(count);
   const double top = 2.0 * std::numbers::pi * record.basis.frequency(record.basis.size() - 1);
   std::vector<Complex> numerator(grid.bins), force(grid.bins), velocity(grid.bins);
@@ -204,7 +197,7 @@ LinearEstimate linear_estimate(const ObservedRecord& record) {
     std::vector<double> weighted(count);
     for (std::size_t j = 0; j < count; ++j) {
       weighted[j] = (record.reaction[r][j] - record.offset[r]) *
-                    std::exp(-kWeight * static_cast<double>(j) / static_cast<double>(count));
+                    std::exp(-kContourWeight * static_cast<double>(j) / static_cast<double>(count));
     }
     const std::vector<Complex> spectrum = fft.forward(weighted);
     const std::vector<Complex> transfer =

@@ -29,10 +29,6 @@ struct ObservedRecord {
   std::size_t samples() const { return reaction[0].size(); }
 };
 
-/// Share of a reaction's standard deviation below which its noise is not taken: the observer's gain
-/// would hold its own discretization for truth.
-inline constexpr double kNoiseFloor = 0.01;
-
 inline constexpr double kUnknownNoise[2] = {std::numeric_limits<double>::quiet_NaN(),
                                             std::numeric_limits<double>::quiet_NaN()};
 

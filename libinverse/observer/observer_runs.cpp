@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/stop_scope.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"
@@ -65,10 +66,10 @@ double misfit(const Innovations& innovations) {
 std::vector<double> block_costs(const Innovations& innovations) {
   const std::size_t samples = innovations.scaled[0].size();
   std::vector<double> blocks;
-  for (std::size_t first = 0; first + kBlock <= samples; first += kBlock) {
+  for (std::size_t first = 0; first + kGainBlock <= samples; first += kGainBlock) {
     double sum = 0.0;
     for (const auto& scaled : innovations.scaled) {
-      for (std::size_t k = first; k < first + kBlock; ++k) sum += 2.0 * huber(scaled[k]);
+      for (std::size_t k = first; k < first + kGainBlock; ++k) sum += 2.0 * huber(scaled[k]);
     }
     blocks.push_back(sum);
   }
@@ -78,7 +79,7 @@ std::vector<double> block_costs(const Innovations& innovations) {
 double steady_misfit(const Innovations& innovations) {
   const std::vector<double> blocks = block_costs(innovations);
   if (blocks.empty()) return misfit(innovations);
-  return quantile(blocks, 0.5) / static_cast<double>(2 * kBlock);
+  return quantile(blocks, 0.5) / static_cast<double>(2 * kGainBlock);
 }
 
 ObserverState PreparedObserver::initial_state() const {
@@ -192,7 +193,7 @@ Innovations ObserverRuns::run_schedule(const PreparedObserver& observer,
     outputs.mean_force = motion->mean_force.data();
   }
   ObserverState state = observer.initial_state();
-  const std::size_t block = schedule.size() == 1 ? 16 * kBlock : kBlock;
+  const std::size_t block = schedule.size() == 1 ? 16 * kGainBlock : kGainBlock;
   for (std::size_t first = 0, i = 0; first < samples; first += block, ++i) {
     throw_if_stopped();
     observer.run(schedule[std::min(i, schedule.size() - 1)], first,

@@ -12,9 +12,6 @@
 
 namespace modcal::observer {
 
-/// Samples of one block, over which a gain is kept.
-inline constexpr std::size_t kBlock = 256;
-
 /// Which gain of the list serves each block; one element: the whole record.
 using GainSchedule = std::vector<std::size_t>;
 
@@ -97,18 +94,17 @@ class ObserverRuns {
   std::shared_ptr<const std::vector<GainTable>> gains_;
 };
 
-/// Σ 2ρ(ν/s) of both reactions over every whole block of kBlock samples.
+/// Σ 2ρ(ν/s) of both reactions over every whole block of kGainBlock samples.
 std::vector<double> block_costs(const Innovations& innovations);
 
 /// Median over the blocks of the mean of 2ρ(ν/s): bursts in which the observer has lost the string,
 /// most of them in the transient, do not count.
 double steady_misfit(const Innovations& innovations);
 
-/// Mean of 2ρ(ν/s) with Huber's ρ, corner 3: 1 for an observer whose model and noise are right.
+/// Mean of 2ρ(ν/s) with Huber's ρ: 1 for an observer whose model and noise are right.
 double misfit(const Innovations& innovations);
 
-/// Huber's ρ(r): r²/2 up to the corner, linear beyond.
-inline constexpr double kHuberCorner = 3.0;
+/// Huber's ρ(r): r²/2 up to kHuberCorner, linear beyond.
 double huber(double r);
 
 }  // namespace modcal::observer

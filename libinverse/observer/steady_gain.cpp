@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <complex>
 
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
@@ -44,11 +45,10 @@ struct RiccatiSolution {
 
 // X = lim H_k for X = A (X⁻¹ + G)⁻¹ Aᵀ + Q; `transition` is that of the filter, A.
 RiccatiSolution solve_by_doubling(const MatrixXd& transition, MatrixXd g, MatrixXd q) {
-  constexpr std::size_t kMost = 40;
   const Eigen::Index n = transition.rows();
   MatrixXd a = transition.transpose(), v(n, 2 * n);
   RiccatiSolution solution;
-  while (solution.doublings < kMost && !solution.converged) {
+  while (solution.doublings < kMostDoublings && !solution.converged) {
     MatrixXd w = g * q;
     w.diagonal().array() += 1.0;
     v << a, g;
@@ -70,8 +70,7 @@ RiccatiSolution solve_by_doubling(const MatrixXd& transition, MatrixXd g, Matrix
 
 // X = Σ_k Fᵏ Q (Fᵏ)ᵀ.
 MatrixXd solve_stein(MatrixXd f, MatrixXd q) {
-  constexpr int kMost = 40;
-  for (int i = 0; i < kMost; ++i) {
+  for (std::size_t i = 0; i < kMostDoublings; ++i) {
     const MatrixXd growth = f * q * f.transpose();
     q += growth;
     if (growth.norm() <= 1e-12 * q.norm()) break;

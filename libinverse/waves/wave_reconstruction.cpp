@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "libinverse/waves/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/model/transfer.hpp"
 #include "libsim/signal/fft.hpp"
@@ -12,9 +13,7 @@
 namespace modcal {
 namespace {
 
-constexpr int kTaps = 64;
-constexpr int kHalf = kTaps / 2;
-constexpr double kKaiser = 9.0;  // side lobes below 1e-4 from 0.06 f_s under half the rate
+constexpr int kHalf = kDelayTaps / 2;
 
 void require_pair(const ModalBasis& basis, double contact, double sample_rate,
                   std::span<const double> left, std::span<const double> right) {
@@ -34,16 +33,17 @@ void require_pair(const ModalBasis& basis, double contact, double sample_rate,
 // x at a real place, by band-limited interpolation; 0 before the record.
 double value_at(std::span<const double> x, double place) {
   const auto centre = static_cast<std::ptrdiff_t>(std::floor(place));
-  const double norm = std::cyl_bessel_i(0.0, kKaiser);
+  const double norm = std::cyl_bessel_i(0.0, kDelayKaiser);
   double sum = 0.0;
   for (std::ptrdiff_t j = centre - kHalf + 1; j <= centre + kHalf; ++j) {
     if (j < 0 || j >= static_cast<std::ptrdiff_t>(x.size())) continue;
     const double distance = place - static_cast<double>(j);
-    const double share = 2.0 * distance / kTaps;
+    const double share = 2.0 * distance / kDelayTaps;
     if (std::abs(share) >= 1.0) continue;
     const double angle = std::numbers::pi * distance;
     const double cardinal = std::abs(angle) < 1e-9 ? 1.0 : std::sin(angle) / angle;
-    const double window = std::cyl_bessel_i(0.0, kKaiser * std::sqrt(1.0 - share * share)) / norm;
+    const double window =
+        std::cyl_bessel_i(0.0, kDelayKaiser * std::sqrt(1.0 - share * share)) / norm;
     sum += cardinal * window * x[static_cast<std::size_t>(j)];
   }
   return sum;
@@ -52,7 +52,7 @@ double value_at(std::span<const double> x, double place) {
 // x(t + shift) for every sample: one row of weights serves them all, as the fraction is the same.
 std::vector<double> shifted(std::span<const double> x, double shift) {
   const double whole = std::floor(shift);
-  std::vector<double> impulse(kTaps + 1, 0.0), weight;
+  std::vector<double> impulse(kDelayTaps + 1, 0.0), weight;
   impulse[kHalf] = 1.0;
   for (std::ptrdiff_t tap = -kHalf; tap <= kHalf; ++tap) {
     weight.push_back(value_at(impulse, kHalf + (shift - whole) - static_cast<double>(tap)));
@@ -116,12 +116,11 @@ Propagation propagation_at(const ModalBasis& basis, Complex s) {
   return {n * std::numbers::pi / basis.length, slope * Complex(0.0, -root) * s / (n * ideal)};
 }
 
-constexpr double kWeight = 2.0;  // σT
-
 std::vector<Complex> weighted_spectrum(const RealFft& fft, std::span<const double> x) {
   std::vector<double> samples(x.begin(), x.end());
   for (std::size_t j = 0; j < samples.size(); ++j) {
-    samples[j] *= std::exp(-kWeight * static_cast<double>(j) / static_cast<double>(x.size()));
+    samples[j] *=
+        std::exp(-kContourWeight * static_cast<double>(j) / static_cast<double>(x.size()));
   }
   return fft.forward(samples);
 }
@@ -129,7 +128,8 @@ std::vector<Complex> weighted_spectrum(const RealFft& fft, std::span<const doubl
 std::vector<double> unweighted_signal(const RealFft& fft, std::vector<Complex> spectrum) {
   std::vector<double> samples = fft.inverse(std::move(spectrum));
   for (std::size_t j = 0; j < samples.size(); ++j) {
-    samples[j] *= std::exp(kWeight * static_cast<double>(j) / static_cast<double>(samples.size()));
+    samples[j] *=
+        std::exp(kContourWeight * static_cast<double>(j) / static_cast<double>(samples.size()));
   }
   return samples;
 }
@@ -174,7 +174,7 @@ WaveReconstruction reconstruct_with_loss(const ModalBasis& basis, double contact
   const double near_path = is_left ? contact : basis.length - contact;
   const double far_path = basis.length - near_path;
   FrequencyGrid grid = FrequencyGrid::of_record(left.size(), sample_rate);
-  grid.sigma = kWeight * sample_rate / static_cast<double>(left.size());
+  grid.sigma = kContourWeight * sample_rate / static_cast<double>(left.size());
   std::vector<Complex> force(grid.bins), velocity(grid.bins);
   for (std::size_t k = 0; k < grid.bins && grid.omega(k) <= 1.02 * basis.omega.back(); ++k) {
     const Complex s(grid.sigma, grid.omega(k));

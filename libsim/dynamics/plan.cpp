@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "libsim/dynamics/scene/contact_modes.hpp"
+#include "libsim/dynamics/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -128,13 +129,12 @@ void add_reconstruction(const Piece& piece, std::vector<Skip>& skips) {
 // Processor time of one evaluation of the sliding law [s].
 double law_seconds(const Scene& scene) {
   const SlidingLaw law = scene.friction.make()->sliding(1.0);
-  constexpr int kCalls = 20000;
   double speed = 0.0;
   const double start = processor_seconds();
   // Each call waits for the one before, as in a step loop.
-  for (int i = 0; i < kCalls; ++i) speed = 0.5 * sliding_force(law, speed);
+  for (int i = 0; i < kTimedCalls; ++i) speed = 0.5 * sliding_force(law, speed);
   // The result is used, so that the loop is not left out itself.
-  return std::isfinite(speed) ? (processor_seconds() - start) / kCalls : 0.0;
+  return std::isfinite(speed) ? (processor_seconds() - start) / kTimedCalls : 0.0;
 }
 
 void add_friction(const Piece& piece, double steps_per_second, std::vector<Skip>& skips) {

@@ -97,7 +97,7 @@ Fault find_clipped(Samples samples) {
     if (!is_higher(pile, 2.0)) continue;
     std::size_t runs = 0, first = 0;
     for_each_run(samples, [&](const Run& run) {
-      if (samples[run.first] != pile.value || run.count < Clipping::kShortestRun) return;
+      if (samples[run.first] != pile.value || run.count < kShortestClip) return;
       if (runs++ == 0) first = run.first;
     });
     if (runs == 0) continue;
@@ -105,8 +105,8 @@ Fault find_clipped(Samples samples) {
         first, fmt::format("{} samples, {} run{} of {} or more, are {:.6g}, the {}, and {} the "
                            "next value {:.6g}: the peaks are clipped; record again with less "
                            "gain, or crop to a part that is not clipped",
-                           pile.at_value, runs, runs == 1 ? "" : "s", Clipping::kShortestRun,
-                           pile.value, highest ? "largest" : "smallest", pile.at_next, pile.next)};
+                           pile.at_value, runs, runs == 1 ? "" : "s", kShortestClip, pile.value,
+                           highest ? "largest" : "smallest", pile.at_next, pile.next)};
   }
   return std::nullopt;
 }
@@ -151,7 +151,7 @@ Fault find_held(Samples samples, double sample_count) {
   for_each_run(samples, [&](const Run& run) {
     const double level = samples[run.first];
     const bool extreme = level == *extremes.first || level == *extremes.second;
-    if (fault || run.count < Clipping::kShortestRun || extreme) return;
+    if (fault || run.count < kShortestClip || extreme) return;
     if (!is_no_chance(run.count, equal - (run.count - 1), sample_count)) return;
     if (is_signal(samples, run)) return;
     fault = {run.first, fmt::format("{} samples in a row are {:.6g}: a gap that was filled; crop "
@@ -163,7 +163,7 @@ Fault find_held(Samples samples, double sample_count) {
 
 // A string that rings out comes to rest within the last steps of the resolution.
 Fault find_cut_end(Samples samples, const Run& last) {
-  if (last.count < Clipping::kShortestRun) return std::nullopt;
+  if (last.count < kShortestClip) return std::nullopt;
   const std::size_t equal = count_equal(samples) - (last.count - 1);
   if (!is_no_chance(last.count, equal, static_cast<double>(samples.size()))) return std::nullopt;
   const double level = samples[last.first], reach = 2.0 * resolution_of(samples);
@@ -207,7 +207,7 @@ Clipping find_clipping(std::span<const double> samples) {
     const double value = samples[run.first];
     const bool extreme =
         (at_lowest && value == levels.lowest) || (at_highest && value == levels.highest);
-    if (!extreme || run.count < Clipping::kShortestRun) return;
+    if (!extreme || run.count < kShortestClip) return;
     if (clipping.runs++ == 0) clipping.first = run.first;
     clipping.samples += run.count;
   });
@@ -219,7 +219,7 @@ std::string text(const Clipping& clipping) {
   return fmt::format(
       "{} samples in {} run{} of {} or more at the limits {:.6g} and {:.6g}, first at "
       "sample {}",
-      clipping.samples, clipping.runs, clipping.runs == 1 ? "" : "s", Clipping::kShortestRun,
+      clipping.samples, clipping.runs, clipping.runs == 1 ? "" : "s", kShortestClip,
       clipping.lowest, clipping.highest, clipping.first);
 }
 

@@ -8,7 +8,7 @@
 
 namespace modcal {
 
-/// Runs of kShortestRun or more equal samples at the largest or the smallest value, where more
+/// Runs of kShortestClip or more equal samples at the largest or the smallest value, where more
 /// stand there than where a signal of few steps turns. Rest at 0 is none, where a run of it is a
 /// tenth of the samples or more.
 struct Clipping {
@@ -17,8 +17,6 @@ struct Clipping {
   std::size_t first = 0;    ///< index of the first of them
   double lowest = 0.0;
   double highest = 0.0;
-
-  static constexpr std::size_t kShortestRun = 3;
 };
 
 /// A constant signal is not clipped, it is constant: no runs. Samples that are NaN end a run.
@@ -45,9 +43,6 @@ Levels measure_levels(std::span<const double> samples);
 /// exponential distribution over its mean), is the noise variance. The median keeps single lines of
 /// the signal out. NaN for fewer than kShortestNoiseRecord samples or where one is not finite.
 double white_noise_rms(std::span<const double> samples);
-inline constexpr std::size_t kShortestNoiseRecord = 64;
-inline constexpr double kNoiseBandLow = 0.6;
-inline constexpr double kNoiseBandHigh = 0.95;
 
 // Equal samples that follow one another.
 

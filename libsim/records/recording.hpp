@@ -52,6 +52,7 @@ struct Recording {
   SampleLines lines;              ///< empty but for CSV files
   std::size_t stated_frames = 0;  ///< as the header says, where only headers were read
 
+  /// Fixed by: length of a message that is still read.
   static constexpr std::size_t kMaxProblems = 10;
 
   std::size_t frames() const {

@@ -23,6 +23,7 @@ void replace_file(const std::filesystem::path& path,
 // Names, units and full scales of the channels, kept in the comment of an audio file.
 
 /// Longest comment that libsndfile 1.2 reads back from a WAV file [bytes].
+/// Fixed by: a limit of that library.
 inline constexpr std::size_t kLongestWavComment = 2000;
 
 /// {"modcal":{"full_scale":10,"channels":[["R1","N"],["R2","N"]]}}: short, because of the limit.

@@ -8,15 +8,11 @@
 #include "libsim/base/units.hpp"
 #include "libsim/base/words.hpp"
 #include "libsim/records/csv_grammar.hpp"
+#include "libsim/records/recording.hpp"
 #include "libsim/records/tuning.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kGap = 1.5;           // median steps
-constexpr double kJitter = 0.01;       // steps
-constexpr double kCoarse = 0.25;       // steps; beyond, a missing sample cannot be told
-constexpr std::size_t kFindings = 10;  // enough to see what is wrong
 
 double median_step(std::span<const double> t) {
   std::vector<double> steps(t.size() - 1);
@@ -37,8 +33,8 @@ void find_gaps(std::span<const double> t, double mean_step, double resolution, b
                         true});
     return;
   }
-  const double longest = kGap * (nominal > 0.0 ? nominal : mean_step) + resolution;
-  for (std::size_t i = 1; i < t.size() && findings.size() < kFindings; ++i) {
+  const double longest = kTimeGap * (nominal > 0.0 ? nominal : mean_step) + resolution;
+  for (std::size_t i = 1; i < t.size() && findings.size() < Recording::kMaxProblems; ++i) {
     const double step = t[i] - t[i - 1];
     // Coarse printing makes neighbors equal.
     if (!(coarse ? step >= 0.0 : step > 0.0)) {
@@ -153,7 +149,7 @@ TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
     return axis;
   }
   measure_jitter(t, step, axis);
-  axis.coarse = resolution > kCoarse * step && axis.jitter > kJitter * step;
+  axis.coarse = resolution > kCoarseTime * step && axis.jitter > kTimeJitter * step;
   find_gaps(t, step, resolution, axis.coarse, axis.findings);
   axis.coarse = axis.coarse && axis.findings.empty();
   if (axis.coarse) return axis;
@@ -165,7 +161,7 @@ TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
   if (std::isnan(axis.sample_rate)) {
     axis.sample_rate = snapped_rate(t, step, duration, resolution + rounding);
   }
-  if (axis.findings.empty() && axis.jitter > kJitter * step + resolution + rounding) {
+  if (axis.findings.empty() && axis.jitter > kTimeJitter * step + resolution + rounding) {
     axis.findings.push_back(
         {axis.jitter_sample,
          fmt::format("sampling is not uniform: {:.9g} s is {:.3g} s ({:.3g} sampling periods) off "

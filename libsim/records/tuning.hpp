@@ -114,4 +114,49 @@ constexpr std::size_t kShortestBandRecord = 3200;
 /// period. Range tried: this. Doubled: not tried. Halved: not tried.
 constexpr double kRestAtZero = 0.1;
 
+/// Equal samples in a row at an extreme value that are a clipped peak.
+/// Source: two alike stand at the top of many a sine.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kShortestClip = 3;
+
+/// Samples of a record below which noise is not read and no spike is looked for.
+/// Source: not derived; its band has eleven bins.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kShortestNoiseRecord = 64;
+
+/// Band, over half the sample rate, in which white noise is read.
+/// Source: below, most records have signal; above, filters against aliasing have cut it.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kNoiseBandLow = 0.6;
+constexpr double kNoiseBandHigh = 0.95;
+
+/// Step of a time axis over the median one from which on there is a gap.
+/// Source: half way to a missing sample.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kTimeGap = 1.5;
+
+/// Deviation of instants from even steps [steps] that is worth a word, beyond what they are printed
+/// to.
+/// Source: not derived; it turns what is at half the rate by 2 degrees.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kTimeJitter = 0.01;
+
+/// Resolution of printed instants [steps] beyond which they are coarse, and a missing sample cannot
+/// be told.
+/// Source: not derived.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kCoarseTime = 0.25;
+
 }  // namespace modcal

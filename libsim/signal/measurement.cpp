@@ -7,12 +7,10 @@
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
+#include "libsim/signal/tuning.hpp"
 
 namespace modcal {
 namespace {
-
-// Below this share of a period the shift is rounding of the given numbers.
-constexpr double kNegligible = 1e-9;
 
 std::vector<double> shifted_by_index(std::span<const double> samples, std::ptrdiff_t shift) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -73,7 +71,7 @@ std::vector<double> advanced(std::span<const double> samples, double delay, doub
   const double periods = delay * sample_rate;
   const double whole = std::round(periods);
   std::vector<double> result = shifted_by_index(samples, static_cast<std::ptrdiff_t>(whole));
-  if (std::abs(periods - whole) <= kNegligible) return result;
+  if (std::abs(periods - whole) <= kNegligibleShift) return result;
   return shifted_by_phase(result, periods - whole);
 }
 

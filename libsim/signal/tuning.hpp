@@ -21,4 +21,11 @@ constexpr double kLineRatio = 30.0;
 /// Halved: hum is missed in one record.
 constexpr double kMainsTolerance = 0.005;
 
+/// Shift in time [sample periods] below which it is rounding of the given numbers.
+/// Source: a delay as a user prints it times a rate.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kNegligibleShift = 1e-9;
+
 }  // namespace modcal

@@ -22,10 +22,13 @@ struct DecayTotals {
 };
 
 /// Sums kept lane by lane: this many numbers a sum.
+/// Fixed by: doubles in the widest vector in use.
 inline constexpr std::size_t kSumLanes = 8;
 /// Sums of add_decay_powers() a mode.
+/// Fixed by: sums that add_decay_powers() is written for.
 inline constexpr std::size_t kPowerSums = 10;
 /// Columns that add_decay_products() takes at most, with two sums each a mode.
+/// Fixed by: length of the kernel's arrays; more columns are taken in parts.
 inline constexpr std::size_t kDecayColumns = 8;
 
 /// Adds the sums of one block, kPowerSums of kSumLanes numbers a mode.

@@ -8,6 +8,7 @@
 namespace modcal {
 
 /// Most columns that add_far_products() takes.
+/// Fixed by: length of the kernel's arrays; more columns go without it.
 inline constexpr std::size_t kFarColumns = 256;
 
 /// From one row of products to the next: whole vectors.

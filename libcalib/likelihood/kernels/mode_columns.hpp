@@ -9,8 +9,10 @@
 namespace modcal {
 
 /// Columns that fill_shared_columns() takes at most.
+/// Fixed by: length of the kernel's arrays; more columns are filled mode by mode.
 inline constexpr std::size_t kSharedColumns = 8;
 /// Sums of add_mode_slopes() a mode, kSumLanes numbers each.
+/// Fixed by: sums that add_mode_slopes() is written for.
 inline constexpr std::size_t kSlopeSums = 5;
 
 struct ColumnTask {

@@ -5,12 +5,10 @@
 #include <numbers>
 
 #include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
+#include "libcalib/likelihood/kernels/tuning.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kFar = 4.0;             // half-widths from the center
-constexpr std::size_t kWorthwhile = 12;  // far modes
 
 BlockNodes make_nodes() {
   BlockNodes nodes;
@@ -53,7 +51,7 @@ ModeSplits::ModeSplits(const WhitenedRecord& record, std::span<const LikelihoodM
       double distance = std::abs(poles[n] - center);
       // The pole at −ω as well: the decays' repeats after a turn.
       if (modes[n].decays) distance = std::min(distance, turn - poles[n] - center);
-      return interpolate && distance >= kFar * half;
+      return interpolate && distance >= kFarMode * half;
     };
     std::size_t far = 0;
     for (std::size_t n = 0; n < modes.size(); ++n) far += is_far(n) ? 1 : 0;
@@ -61,7 +59,7 @@ ModeSplits::ModeSplits(const WhitenedRecord& record, std::span<const LikelihoodM
       const bool wants_far = group >= 2;
       const std::size_t before = order_.size();
       for (std::size_t n = 0; n < modes.size(); ++n) {
-        const bool counts_as_far = far >= kWorthwhile && is_far(n);
+        const bool counts_as_far = far >= kFewestFarModes && is_far(n);
         if (modes[n].even == (group % 2 == 1) && counts_as_far == wants_far) order_.push_back(n);
       }
       counts_[b][group] = order_.size() - before;

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libcalib/likelihood/tuning.hpp"
 #include "libsim/base/kernels/column_products.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-constexpr double kPluckRidge = 1e-9;
 
 }  // namespace
 

@@ -4,15 +4,10 @@
 #include <cmath>
 
 #include "libcalib/likelihood/pluck/pluck_evaluation.hpp"
+#include "libcalib/likelihood/tuning.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
-namespace {
-
-constexpr std::size_t kPluckRepeats = 3;
-constexpr std::size_t kHalfBand = 128;
-
-}  // namespace
 
 PluckLikelihood::PluckLikelihood(WhitenedRecord record) : record_(std::move(record)) {
   MODCAL_REQUIRE(record_.sigma == 0.0,
@@ -31,11 +26,11 @@ Eigen::MatrixXd PluckLikelihood::noise_information(const ModelPoint& point,
                                                    const LikelihoodColumns& columns) const {
   const auto n = static_cast<Eigen::Index>(columns.count);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t r = 0; r < kPluckRepeats; ++r) {
+  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
     const WhitenedRecord noise = record_.noise(r);
     sum += PluckEvaluation(noise, point).differentiate(columns, {}).information;
   }
-  return sum / static_cast<double>(kPluckRepeats);
+  return sum / static_cast<double>(kNoiseRepeats);
 }
 
 LikelihoodPoint PluckLikelihood::unweighted(const ModelPoint& point,
@@ -54,8 +49,8 @@ double PluckLikelihood::degrees_of_freedom(const ModelPoint& point) const {
 
 double PluckLikelihood::power_about(std::complex<double> pole, double omega) const {
   const auto center = std::min(static_cast<std::size_t>(omega / record_.spacing), record_.bins - 1);
-  const std::size_t begin = center > kHalfBand ? center - kHalfBand : 0;
-  const std::size_t end = std::min(center + kHalfBand, record_.bins);
+  const std::size_t begin = center > kPluckHalfBand ? center - kPluckHalfBand : 0;
+  const std::size_t end = std::min(center + kPluckHalfBand, record_.bins);
   Complex left = 0.0, right = 0.0;
   double norm = 0.0;
   for (std::size_t k = begin; k < end; ++k) {

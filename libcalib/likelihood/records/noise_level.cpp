@@ -88,9 +88,6 @@ double noise_power_error(const std::array<double, 2>& stated, const ModalBasis& 
   const NoiseBand band = NoiseBand::above(basis, data.sample_rate, data.samples);
   const double full = 1e-2 * std::sqrt(51200.0 / static_cast<double>(data.samples));
   if (band.clear) return full;
-  // Of independent bins 1/ln 2; under the window neighbors correlate, their powers more than their
-  // places about the median.
-  constexpr double kMedianOverMean = 1.28;
   const NoiseBand widest;
   return full * kMedianOverMean * std::sqrt((widest.high - widest.low) / (band.high - band.low));
 }

@@ -48,7 +48,10 @@ struct NoisyRecords {
 /// padded to whole blocks of kBlock bins; the padding has weight 0.
 struct WhitenedRecord {
   static constexpr std::size_t kBlock = kColumnLength / 2;  ///< a column holds both parts
-  static constexpr std::size_t kNodes = 16;                 ///< Chebyshev nodes of a block
+  /// Chebyshev nodes of a block.
+  /// Fixed by: rounding, in whole vectors; they leave 1e-14 of a mode whose pole is four
+  /// half-widths from the center.
+  static constexpr std::size_t kNodes = 16;
 
   std::size_t bins = 0;      ///< K_b
   double sigma = 0.0;        ///< σ [1/s]

@@ -2,13 +2,10 @@
 
 #include <cmath>
 
+#include "libcalib/identifiability/tuning.hpp"
+#include "libcalib/optimizers/staged/tuning.hpp"
+
 namespace modcal {
-namespace {
-
-constexpr double kPlaceReach = 6e-3;
-constexpr double kPlaceMargin = 20.0;  // of the largest of some tens of places with noise alone
-
-}  // namespace
 
 double loudest_shift(std::span<const std::shared_ptr<const PluckLikelihood>> plucks,
                      const ModelPoint& model, std::size_t mode) {
@@ -23,8 +20,8 @@ double loudest_shift(std::span<const std::shared_ptr<const PluckLikelihood>> plu
     return sum;
   };
   double best = power(0.0) + kPlaceMargin, found = 0.0;
-  double shift = -kPlaceReach;
-  while (shift <= kPlaceReach) {
+  double shift = -kNeighborReach;
+  while (shift <= kNeighborReach) {
     if (const double value = power(shift); value > best) {
       best = value;
       found = shift;

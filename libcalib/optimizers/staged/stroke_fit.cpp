@@ -5,13 +5,9 @@
 #include <utility>
 
 #include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/likelihood/tuning.hpp"
 
 namespace modcal {
-namespace {
-
-constexpr std::size_t kStrokeRepeats = 3;
-
-}  // namespace
 
 void set_prior(QuadraticPrior prior, NewtonOptions& options) {
   options.prior = std::move(prior.precision);
@@ -121,7 +117,7 @@ Eigen::MatrixXd StrokeFit::noise_at(const StringUnknowns& unknowns,
                                     const Eigen::VectorXd& theta) const {
   poll();
   return weighted_->noise_information(unknowns.model(theta), unknowns.columns(theta),
-                                      kStrokeRepeats);
+                                      kNoiseRepeats);
 }
 
 LikelihoodPoint StrokeFit::weighted_point(const StringUnknowns& unknowns,

@@ -8,17 +8,12 @@
 #include <utility>
 
 #include "libinverse/spectral/choices/rules.hpp"
+#include "libinverse/spectral/choices/tuning.hpp"
 #include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
-
-// Below this share of the largest singular value the automatic range does not reach.
-constexpr double kLowestShare = 1e-8;
-
-// Ratio of two parameters from which on their rules disagree.
-constexpr double kStrong = 10.0;
 
 constexpr std::array<std::string_view, 2> kMeasures = {"solution", "derivative"};
 
@@ -101,9 +96,9 @@ std::vector<double> ParameterChoice::search_grid(std::span<const double> falling
   const double smallest =
       *std::find_if(falling_sigma.rbegin(), falling_sigma.rend(), [](double s) { return s > 0.0; });
   const double highest = std::isnan(options_.highest) ? largest : options_.highest;
-  const double lowest = !std::isnan(options_.lowest)
-                            ? options_.lowest
-                            : std::max(std::min(smallest, highest), kLowestShare * highest);
+  const double lowest = !std::isnan(options_.lowest) ? options_.lowest
+                                                     : std::max(std::min(smallest, highest),
+                                                                kLowestParameterShare * highest);
   MODCAL_REQUIRE(lowest <= highest,
                  "no parameter to search: the lowest, {:g}, exceeds the highest, {:g} (singular "
                  "values lie in [{:g}, {:g}])",
@@ -173,7 +168,7 @@ std::string disagreement_of(const ChosenParameter& choice, std::size_t rows, dou
       continue;
     }
     const double ratio = other.parameter / choice.parameter();
-    if (ratio <= kStrong && ratio * kStrong >= 1.0) continue;
+    if (ratio <= kRulesApart && ratio * kRulesApart >= 1.0) continue;
     text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name, other.parameter);
   }
   if (text.empty()) return {};

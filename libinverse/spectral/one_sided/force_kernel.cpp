@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "libinverse/spectral/one_sided/tuning.hpp"
+
 namespace modcal {
 
 void identify_force(std::span<const double> kept, std::span<const Complex> inverse,
@@ -45,19 +47,21 @@ void ForceKernel::fill_filter(State& state, std::size_t sensor, bool with_slopes
   for (std::size_t k = 0; k < bins; ++k) sigma[k] = std::abs(state.transfer[sensor][k]);
   filter_.regularizer->filter_factors(sigma, filter_.parameter, kept);
   if (!with_slopes) return;
-  constexpr double kStep = 1e-5;
   const auto factors_at = [&](double scale) {
     std::vector<double> factors(bins);
     for (std::size_t k = 0; k < bins; ++k) shifted[k] = sigma[k] * scale;
     filter_.regularizer->filter_factors(shifted, filter_.parameter, factors);
     return factors;
   };
-  const std::vector<double> above = factors_at(1.0 + kStep), below = factors_at(1.0 - kStep);
+  const std::vector<double> above = factors_at(1.0 + kScaleStep),
+                            below = factors_at(1.0 - kScaleStep);
   for (std::size_t k = 0; k < bins; ++k) {
     const double change = above[k] - below[k];
     // A jump by the whole of φ is a step of a water level, whose slope elsewhere is 0.
     const bool step = std::abs(change) > 0.5;
-    if (!step && sigma[k] > 0.0) state.kept_slope[sensor][k] = change / (2.0 * kStep * sigma[k]);
+    if (!step && sigma[k] > 0.0) {
+      state.kept_slope[sensor][k] = change / (2.0 * kScaleStep * sigma[k]);
+    }
   }
 }
 

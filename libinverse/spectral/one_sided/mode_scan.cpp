@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "libinverse/spectral/one_sided/tuning.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/model/modal_kernel.hpp"
 
@@ -103,13 +104,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace modcal {
-namespace {
-
-// Bins of a task, some ten microseconds of work for 50 modes and 50 candidates; a multiple of
-// kBinLanes.
-constexpr std::size_t kBlock = 96;
-
-}  // namespace
 
 HWY_EXPORT(IntegrateCandidates);
 
@@ -133,10 +127,10 @@ void ModeScan::integrate(const ModalModel& model, std::size_t mode, const Freque
   omegas_.resize(padded);
   for (std::size_t k = 0; k < padded; ++k) omegas_[k] = grid.omega(bins.first + k);
   const ModalSums sums(others);
-  const std::size_t blocks = (padded + kBlock - 1) / kBlock;
+  const std::size_t blocks = (padded + kScanBlock - 1) / kScanBlock;
   partial_.assign(blocks * candidates.size(), 0.0);
   const auto integrate_block = [&](std::size_t block) {
-    const std::size_t begin = block * kBlock, count = std::min(kBlock, padded - begin);
+    const std::size_t begin = block * kScanBlock, count = std::min(kScanBlock, padded - begin);
     sums.evaluate(grid, {bins.first + begin, bins.first + begin + count}, begin, rest_);
     std::vector<ScannedSensor> part = sensors;
     for (ScannedSensor& sensor : part) {

@@ -13,6 +13,7 @@ namespace modcal {
 namespace {
 
 // Below it σ² is no normal number and 1/σ² has no digits left.
+// Fixed by: the square root of the smallest normal double.
 constexpr double kSmallestSingularValue = 1.5e-154;
 
 void require_non_negative(std::span<const double> values, const char* what) {

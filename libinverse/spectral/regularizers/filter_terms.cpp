@@ -6,13 +6,12 @@
 #include <functional>
 #include <numbers>
 
+#include "libinverse/spectral/regularizers/tuning.hpp"
+
 namespace modcal {
 namespace {
 
-constexpr std::size_t kNodes = 12;
-constexpr double kBandRatio = 1.5;
-
-using NodeValues = std::array<double, kNodes>;
+using NodeValues = std::array<double, kFilterNodes>;
 
 struct Band {
   double center = 0.0;
@@ -28,7 +27,7 @@ struct Moments {
   void add(double t, double residual_i, double solution_i, double freedom_i) {
     double previous = t;  // T_{−1} = T_1
     double polynomial = 1.0;
-    for (std::size_t p = 0; p < kNodes; ++p) {
+    for (std::size_t p = 0; p < kFilterNodes; ++p) {
       residual[p] += polynomial * residual_i;
       solution[p] += polynomial * solution_i;
       freedom[p] += polynomial * freedom_i;
@@ -40,17 +39,19 @@ struct Moments {
 };
 
 double node(std::size_t j) {
-  return std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / static_cast<double>(kNodes));
+  return std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) /
+                  static_cast<double>(kFilterNodes));
 }
 
-// Weight of node j that gives every polynomial of degree < kNodes the sum the components give it.
+// Weight of node j that gives every polynomial of degree < kFilterNodes the sum the components give
+// it.
 double node_weight(const NodeValues& moments, std::size_t j) {
-  const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / kNodes;
+  const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / kFilterNodes;
   double sum = 0.5 * moments[0];
-  for (std::size_t p = 1; p < kNodes; ++p) {
+  for (std::size_t p = 1; p < kFilterNodes; ++p) {
     sum += moments[p] * std::cos(angle * static_cast<double>(p));
   }
-  return sum * 2.0 / static_cast<double>(kNodes);
+  return sum * 2.0 / static_cast<double>(kFilterNodes);
 }
 
 void append_component(const SpectralSystem& system, std::size_t i, FilterTerms& terms) {
@@ -60,19 +61,19 @@ void append_component(const SpectralSystem& system, std::size_t i, FilterTerms& 
 
 void append_band(const SpectralSystem& system, std::size_t begin, std::size_t end,
                  FilterTerms& terms) {
-  if (end - begin <= kNodes) {
+  if (end - begin <= kFilterNodes) {
     for (std::size_t i = begin; i < end; ++i) append_component(system, i, terms);
     return;
   }
   const double high = system.sigma[begin];
-  const double low = high / kBandRatio;
+  const double low = high / kFilterBandRatio;
   const Band band{.center = 0.5 * (high + low), .half_width = 0.5 * (high - low)};
   Moments moments;
   for (std::size_t i = begin; i < end; ++i) {
     moments.add((system.sigma[i] - band.center) / band.half_width, system.power[i],
                 system.solution_weight[i] * system.power[i], system.multiplicity[i]);
   }
-  for (std::size_t j = 0; j < kNodes; ++j) {
+  for (std::size_t j = 0; j < kFilterNodes; ++j) {
     terms.append(band.center + band.half_width * node(j), node_weight(moments.residual, j),
                  node_weight(moments.solution, j), node_weight(moments.freedom, j));
   }
@@ -104,7 +105,7 @@ FilterTerms compacted_terms_of(const SpectralSystem& system) {
   terms.constant = system.outside_power;
   std::size_t begin = 0;
   while (begin < system.size() && system.sigma[begin] > 0.0) {
-    const double low = system.sigma[begin] / kBandRatio;
+    const double low = system.sigma[begin] / kFilterBandRatio;
     std::size_t end = begin + 1;
     while (end < system.size() && system.sigma[end] >= low && system.sigma[end] > 0.0) ++end;
     append_band(system, begin, end, terms);

@@ -7,10 +7,11 @@
 namespace modcal {
 
 /// Numbers from one column of a block to the next: 256 bins, their real parts, then their imaginary
-/// ones.
+/// ones. Fixed by: layout of all blocks of columns, which kernels are compiled for.
 inline constexpr std::size_t kColumnLength = 512;
 
 /// Columns in a tile: arrays of columns are padded to a multiple of it.
+/// Fixed by: columns that AddTile() and SubtractFromTile() are written for.
 inline constexpr std::size_t kColumnTile = 4;
 constexpr std::size_t tiled(std::size_t count) {
   return (count + kColumnTile - 1) / kColumnTile * kColumnTile;

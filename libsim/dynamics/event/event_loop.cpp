@@ -2,16 +2,13 @@
 
 #include "libsim/dynamics/event/sliding/sliding.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
+#include "libsim/dynamics/event/tuning.hpp"
 
 namespace modcal::event {
 namespace {
 
 // More switches, and more steps, in one grid step than any regular motion makes.
 constexpr int kMaxSwitches = 200, kMaxStepsPerGridStep = 1'000'000;
-// |v_c| below this share of the velocities at hand is zero.
-constexpr double kAtRest = 1e-14;
-// Positions in a grid step closer than this are one.
-constexpr double kSamePoint = 1e-13;
 
 template <typename Friction>
 class Run {

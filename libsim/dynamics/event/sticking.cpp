@@ -1,22 +1,19 @@
 #include "libsim/dynamics/event/sticking.hpp"
 
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
+#include "libsim/dynamics/event/tuning.hpp"
 
 namespace modcal::event {
 namespace {
 
 using Complex = std::complex<double>;
 
-// Largest |μ|h of a power series of 25 terms: 1.6²⁵/25! = 8e-21 of its size is left out.
-constexpr double kStickingPhase = 1.6;
-// Force this close to the limit (relative) at the attachment is the limit: the continuous rule.
-constexpr double kAtLimit = 1e-12;
-
 }  // namespace
 
 // With p = 1/(1 + e^x) and x = (ϑ − ϑ_s)/w the limit is μ_hot + (μ_cold − μ_hot) p, and
 // p' = −p (1 − p) x', x' = −g (ϑ/w): the powers of p follow one after the other.
 void StaticLimit::series(double tau, double time, std::span<double> out) const {
+  // Fixed by: length of three arrays; no more than the terms of a series are asked for.
   constexpr std::size_t kMost = 32;
   assert(out.size() <= kMost);
   std::fill(out.begin(), out.end(), 0.0);

@@ -71,6 +71,7 @@ class Sticking {
   Advance advance(double tau, double time, bool observed);
 
   /// Samples in a row, each a longest step after the one before.
+  /// Fixed by: length of the rows of a block, whose steps are taken or left one by one.
   static constexpr std::size_t kBlock = 4;
   struct Block {
     using Row = std::array<double, kBlock>;
@@ -111,6 +112,7 @@ class Sticking {
   MotionSample observe(double tau);
 
  private:
+  // Fixed by: rounding; |μ|h ≤ kStickingPhase leaves 1.6²⁵/25! = 8e-21.
   static constexpr std::size_t kTerms = 25;
   struct ForceJet {
     double value = 0.0;

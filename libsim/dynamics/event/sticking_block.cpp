@@ -1,13 +1,9 @@
 // The held string beside its single steps: how it is made and shown, some steps at once.
 
 #include "libsim/dynamics/event/sticking.hpp"
+#include "libsim/dynamics/event/tuning.hpp"
 
 namespace modcal::event {
-namespace {
-
-constexpr double kMaxPhase = 1e4;
-
-}  // namespace
 
 Sticking held_string(const ContactModes& modes, const ContactParameters& contact,
                      const StaticLimit& static_limit, double longest_step, MotionRequest wanted) {
@@ -16,17 +12,17 @@ Sticking held_string(const ContactModes& modes, const ContactParameters& contact
                  "adherence of {:g} N/m and {:g} N s/m gives the held string a double root, which "
                  "its exact propagator cannot resolve; change the damping slightly",
                  contact.stiffness, contact.damping);
-  MODCAL_REQUIRE(closed->largest_pole * longest_step <= kMaxPhase,
+  MODCAL_REQUIRE(closed->largest_pole * longest_step <= kMostStickingPhase,
                  "adherence of {:g} N/m and {:g} N s/m has a pole of {:g} 1/s: more than {:g} "
                  "radians in a step of {:g} s; shorten the step or soften the contact",
-                 contact.stiffness, contact.damping, closed->largest_pole, kMaxPhase, longest_step);
+                 contact.stiffness, contact.damping, closed->largest_pole, kMostStickingPhase,
+                 longest_step);
   return {std::move(*closed), static_limit, longest_step, wanted};
 }
 
 // How much of `time` from the state at τ on the series of the force tells to rounding:
-// Σ |w_j| (|μ_j| t)²⁵/25! ≤ 1e-17 of the limit.
+// Σ |w_j| (|μ_j| t)²⁵/25! ≤ kLeftOutOfSeries of the limit.
 double Sticking::series_time(const PlanarVector& state, double tau, double time) {
-  constexpr double kLeftOut = 1e-17;
   if (last_power_.empty()) {
     last_power_.resize(fourth_power_.size());
     for (std::size_t j = 0; j < loop_.roots; ++j) {
@@ -35,7 +31,7 @@ double Sticking::series_time(const PlanarVector& state, double tau, double time)
     }
   }
   const double left_out = modal_kernels().weighted_size(last_power_, state);
-  const double allowed = kLeftOut * limit_.at(tau) * drive_.load_at(tau);
+  const double allowed = kLeftOutOfSeries * limit_.at(tau) * drive_.load_at(tau);
   const double reach = std::pow(allowed / left_out, 1.0 / double{kTerms});
   return std::min(time, series_step_ * std::max(1.0, reach));
 }

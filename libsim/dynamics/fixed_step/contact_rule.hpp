@@ -259,6 +259,7 @@ class ContactRule {
   double attach_displacement_ = 0.0;
   std::uint64_t attach_step_ = 0;
   typename ClosedFormOf<Law>::Type closed_form_;
+  // Fixed by: speeds that determine the quintic of sliding_force().
   static constexpr int kPast = 6;
   double speed_[kPast] = {};  // the last sliding speeds, newest first
   Expansion ahead_[2];        // for the next step and the one after

@@ -6,6 +6,7 @@
 
 namespace modcal {
 
+/// Most contact points. Fixed by: those that a bow may have (Bow::contact_points()).
 constexpr std::size_t kMostPoints = 16;
 
 /// One-step coefficients of every mode, padded with zeros to whole vectors. S is the part of Z that

@@ -3,6 +3,7 @@
 
 #include "libsim/dynamics/fixed_step/contact_point.hpp"
 #include "libsim/dynamics/fixed_step/line_kernel.hpp"
+#include "libsim/dynamics/fixed_step/tuning.hpp"
 
 namespace modcal {
 
@@ -108,9 +109,8 @@ class PointForces {
   // Gauss–Seidel over the points: a force moves the other points by at most b times it, and b K_a h
   // and b C_a are small where the step resolves the adherence.
   bool settle(const PointMotions& motion, const BowInstant& bow) {
-    constexpr int kMostSweeps = 200;
     double previous = HUGE_VAL;
-    for (int k = 0; k < kMostSweeps; ++k) {
+    for (int k = 0; k < kPointSweeps; ++k) {
       const auto [change, scale] = sweep(motion, bow);
       if (points_.size() == 1 || change <= 1e-13 * scale) return true;
       // The stretch of the spring carries the rounding of the displacement, K_a y · 1e-16: where

@@ -6,13 +6,11 @@
 #include <numbers>
 
 #include "libsim/base/random.hpp"
+#include "libsim/dynamics/gestures/tuning.hpp"
 
 namespace modcal {
 
 namespace {
-
-constexpr std::size_t kLobes = 8;   // of the window on either side
-constexpr std::size_t kPieces = 8;  // straight pieces between two draws of noise
 
 double sinc(double x) {
   const double angle = std::numbers::pi * x;
@@ -20,7 +18,7 @@ double sinc(double x) {
 }
 
 double lanczos(double x) {
-  return std::abs(x) < kLobes ? sinc(x) * sinc(x / static_cast<double>(kLobes)) : 0.0;
+  return std::abs(x) < kNoiseLobes ? sinc(x) * sinc(x / static_cast<double>(kNoiseLobes)) : 0.0;
 }
 
 }  // namespace
@@ -153,7 +151,6 @@ void SineGesture::Options::visit(OptionVisitor& visitor) {
 }
 
 PiecewiseLinear SineGesture::factor(double duration) const {
-  constexpr double kPiecesPerPeriod = 128.0;
   const double step = 1.0 / (kPiecesPerPeriod * options_.frequency);
   const double count = std::ceil(duration / step);
   MODCAL_REQUIRE(count <= 1e7, "a gesture of {:g} Hz over {:g} s takes {:g} pieces: at most 1e7",
@@ -179,20 +176,20 @@ void GestureNoise::visit(OptionVisitor& visitor) {
 
 PiecewiseLinear GestureNoise::factor(double duration, std::string_view role) const {
   if (!present || level == 0.0) return PiecewiseLinear(1.0);
-  const double pieces = std::ceil(duration * 2.0 * cutoff * static_cast<double>(kPieces));
+  const double pieces = std::ceil(duration * 2.0 * cutoff * static_cast<double>(kNoisePieces));
   MODCAL_REQUIRE(pieces <= 1e7, "noise up to {:g} Hz over {:g} s takes {:g} pieces: at most 1e7",
                  cutoff, duration, pieces);
   const auto count = static_cast<std::size_t>(pieces) + 1;
-  std::vector<double> draws((count - 1) / kPieces + 2 * kLobes + 1);
+  std::vector<double> draws((count - 1) / kNoisePieces + 2 * kNoiseLobes + 1);
   fill_standard_normal(StreamKey(static_cast<std::uint64_t>(seed)).with(role), draws);
   std::vector<double> times(count), values(count, 1.0);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t whole = i / kPieces;
-    const double part = static_cast<double>(i % kPieces) / static_cast<double>(kPieces);
-    times[i] = static_cast<double>(i) / (2.0 * cutoff * static_cast<double>(kPieces));
-    // Draw j stands at the time (j − kLobes)/(2 f_cut).
-    for (std::size_t j = 0; j <= 2 * kLobes; ++j) {
-      const double distance = part + static_cast<double>(kLobes) - static_cast<double>(j);
+    const std::size_t whole = i / kNoisePieces;
+    const double part = static_cast<double>(i % kNoisePieces) / static_cast<double>(kNoisePieces);
+    times[i] = static_cast<double>(i) / (2.0 * cutoff * static_cast<double>(kNoisePieces));
+    // Draw j stands at the time (j − kNoiseLobes)/(2 f_cut).
+    for (std::size_t j = 0; j <= 2 * kNoiseLobes; ++j) {
+      const double distance = part + static_cast<double>(kNoiseLobes) - static_cast<double>(j);
       values[i] += level * draws[whole + j] * lanczos(distance);
     }
   }

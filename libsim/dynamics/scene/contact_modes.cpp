@@ -2,13 +2,11 @@
 
 #include <numeric>
 
+#include "libsim/dynamics/scene/tuning.hpp"
 #include "libsim/model/transfer.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kNodeTolerance = 1e-13;
-constexpr double kNodeShape = 1e-20;
 
 using Shapes = std::vector<std::vector<double>>;  // points × modes
 
@@ -119,7 +117,7 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
   ContactModes modes;
   const Shapes shapes = shapes_at(basis, {&contact, 1});
   modes.left_out = add_modes(basis, {&contact, 1}, shapes, initial, modes, [&](std::size_t n) {
-    const double phi = is_node(shapes[0][n]) ? kNodeShape : shapes[0][n];
+    const double phi = is_node(shapes[0][n]) ? kNodeStandIn : shapes[0][n];
     modes.drive.push_back(phi * phi / basis.mass[n]);
     return phi;
   });

@@ -3,7 +3,7 @@
 namespace modcal {
 namespace {
 
-// Its square, an energy, is finite.
+// Fixed by: range of a double; its square, an energy, is finite.
 constexpr double kLargestInput = 1e150;
 
 }  // namespace

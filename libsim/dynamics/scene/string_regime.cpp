@@ -3,6 +3,7 @@
 #include <array>
 
 #include "libsim/dynamics/scene/contact_modes.hpp"
+#include "libsim/dynamics/scene/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -22,9 +23,6 @@ double loss_sum(const ModalBasis& basis, double beta) {
   return sum;
 }
 
-constexpr double kShortestPeriod = 0.8;
-constexpr double kLongestPeriod = 1.25;
-
 // The signal against itself `lag` samples later, both about the mean of the whole.
 double lagged_correlation(std::span<const double> x, std::size_t lag) {
   double product = 0.0, early = 0.0, late = 0.0;
@@ -43,10 +41,6 @@ struct Period {
   double samples = 0.0;
 };
 
-// A motion that repeats itself n times in a period correlates as well over (n ± 1)/n of one: among
-// equals the period nearest to the string's is taken.
-constexpr double kEqual = 0.02;
-
 Period find_period(std::span<const double> x, double period) {
   const auto first = static_cast<std::size_t>(kShortestPeriod * period);
   const auto last = static_cast<std::size_t>(std::ceil(kLongestPeriod * period));
@@ -58,7 +52,7 @@ Period find_period(std::span<const double> x, double period) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double left = i > 0 ? values[i - 1] : values[i];
     const double right = i + 1 < values.size() ? values[i + 1] : values[i];
-    if (values[i] < largest - kEqual || values[i] < left || values[i] < right) continue;
+    if (values[i] < largest - kEqualCorrelation || values[i] < left || values[i] < right) continue;
     const double bend = left - 2.0 * values[i] + right;
     const double lag =
         static_cast<double>(first + i) + (bend < 0.0 ? 0.5 * (left - right) / bend : 0.0);
@@ -93,9 +87,6 @@ SlipCount count_slips(std::span<const Switch> switches, double start, double end
   }
   return count;
 }
-
-// Record from which the last judged slip is left out: it may go on beyond the end.
-constexpr double kSparePeriods = 1.5;
 
 }  // namespace
 

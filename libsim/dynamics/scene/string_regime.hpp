@@ -42,6 +42,7 @@ enum class StringRegime {
   kRaucous,       ///< slips without a period near the string's
   kSilent,        ///< held without a slip, or sliding while the motion dies out
 };
+/// Fixed by: the regimes listed above.
 inline constexpr std::size_t kStringRegimes = 4;
 /// "helmholtz", "multiple_slip", "raucous", "silent".
 std::string_view name_of(StringRegime regime);

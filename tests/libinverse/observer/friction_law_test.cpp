@@ -6,6 +6,7 @@
 
 #include "libinverse/observer/friction_candidates.hpp"
 #include "libinverse/observer/model_based_estimator.hpp"
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
@@ -96,7 +97,7 @@ observer::FrictionCandidate candidate(std::string law, std::size_t parameters,
   observer::FrictionCandidate result{.law = std::move(law)};
   result.free_parameters = parameters;
   const double count =
-      static_cast<double>(2 * observer::kBlock) * static_cast<double>(block_cost.size());
+      static_cast<double>(2 * observer::kGainBlock) * static_cast<double>(block_cost.size());
   for (const double cost : block_cost) result.misfit += cost / count;
   result.criterion =
       count * std::log(result.misfit) + static_cast<double>(parameters) * std::log(count);

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "libinverse/observer/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"

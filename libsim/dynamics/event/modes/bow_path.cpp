@@ -4,10 +4,10 @@
 #include <cassert>
 #include <cmath>
 
+#include "libsim/dynamics/event/modes/tuning.hpp"
+
 namespace modcal::event {
 namespace {
-
-constexpr double kOnGrid = 1e-9;
 
 GridPoint grid_point(double time, double grid_step) {
   const double steps = time / grid_step;

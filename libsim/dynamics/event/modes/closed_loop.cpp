@@ -1,16 +1,15 @@
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
 
 #include "libsim/dynamics/event/modes/secular_roots.hpp"
+#include "libsim/dynamics/event/modes/tuning.hpp"
 
 namespace modcal::event {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kWorstCondition = 1e8;
 // Entries of a change of basis that is kept; 16 bytes each, there and back.
 constexpr std::size_t kMostEntries = std::size_t{512} * 512;
-constexpr double kWorstRoundTrip = 1e-7;
 
 // What one root contributes: 1/((μ − λ_n)(μ − λ̄_n)) for every mode and sums over them.
 struct RootColumn {

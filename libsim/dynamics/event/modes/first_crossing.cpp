@@ -4,13 +4,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "libsim/dynamics/event/modes/tuning.hpp"
+
 namespace modcal::event {
 namespace {
 
+// Fixed by: rounding of a double, 2.22e-16, and a little more.
 constexpr double kRounding = 2.3e-16;
-// A start known to be zero: the leading coefficients that are rounding beside the largest one.
-constexpr double kVanishing = 1e-13;
-constexpr int kMaxSteps = 300;
 
 struct Jet {
   double value, slope, half_curvature;
@@ -49,7 +49,7 @@ Bounds bounds_of(std::span<const double> c, double upper) {
 std::optional<double> march(std::span<const double> c, double upper) {
   const Bounds bounds = bounds_of(c, upper);
   double t = 0.0;
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kCrossingSteps; ++step) {
     const Jet jet = evaluate(c, t);
     if (!(jet.value > kRounding * bounds.size)) return t;
     const double curvature = 2.0 * jet.half_curvature - bounds.third * (upper - t);

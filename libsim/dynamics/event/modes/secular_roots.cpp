@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/dynamics/event/modes/tuning.hpp"
+
 namespace modcal::event {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kMaxSweeps = 200;
 // The iteration is cubic: a step below 1e-7 of the offset leaves an error below rounding.
 constexpr double kFrozenStep = 1e-7, kFrozenNewton = 1e-5;
-constexpr double kRealPart = 1e-9;  // |Im μ| below this share of |μ| is rounding of a real root
 
 struct Contact {
   double stiffness, damping;
@@ -111,7 +111,7 @@ std::vector<SecularRoot> first_guesses(std::span<const OpenLoopMode> modes, Cont
 bool iterate(std::span<const OpenLoopMode> modes, Contact contact, bool mirrored,
              std::vector<SecularRoot>& roots) {
   std::vector<bool> frozen(roots.size(), false);
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kRootSweeps; ++sweep) {
     bool all_frozen = true;
     for (std::size_t i = 0; i < roots.size(); ++i) {
       if (frozen[i]) continue;
@@ -146,7 +146,7 @@ std::optional<std::vector<SecularRoot>> upper_half(const std::vector<SecularRoot
   std::size_t counted = 0;
   for (const SecularRoot& root : all) {
     const Complex value = root.value();
-    if (std::abs(value.imag()) <= kRealPart * std::abs(value)) {
+    if (std::abs(value.imag()) <= kRealRoot * std::abs(value)) {
       kept.push_back(root.as_real());
       counted += 1;
     } else if (value.imag() > 0.0) {

@@ -1,5 +1,6 @@
 
 #include "libsim/dynamics/event/sliding/contact_friction.hpp"
+#include "libsim/dynamics/event/sliding/tuning.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "libsim/dynamics/event/sliding/collocation.cpp"
@@ -8,9 +9,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
-
-// Residual over what the terms of its equation amount to: nothing but rounding.
-constexpr double kTight = 1e-15;
 
 // Elimination of column k and all later ones; A is I + (small), so that its diagonal serves as
 // pivots. Recursive, so that every index is a constant. False where a pivot vanishes.
@@ -95,6 +93,7 @@ HWY_INLINE bool NewtonStep(double (&a)[kSize][kSize], double (&b)[kSize], double
 template <int kUnknowns>
 struct LawValues {
   // Whole vectors: the compiler then computes the nodes side by side.
+  // Fixed by: unknown nodes of the largest rule, kMaxNodes − 1.
   static constexpr int kPadded = 4;
   double force[kPadded], slope[kPadded], curvature[kPadded];
 
@@ -151,7 +150,8 @@ HWY_INLINE bool LeavesRounding(const LawValues<kUnknowns>& at, const double (&st
   }
   bool rounding = true;
   for (int i = 0; i < kUnknowns; ++i) {
-    rounding = rounding && size[i] * bend <= kTight * scale[i] && std::abs(step[i]) <= scale[i];
+    rounding =
+        rounding && size[i] * bend <= kTightNodes * scale[i] && std::abs(step[i]) <= scale[i];
   }
   return rounding;
 }
@@ -159,8 +159,7 @@ HWY_INLINE bool LeavesRounding(const LawValues<kUnknowns>& at, const double (&st
 template <int kNodes, typename Law>
 bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& free,
                   NodeValues& values) {
-  constexpr int kMaxIterations = 25, kUnknowns = kNodes - 1;
-  constexpr double kAcceptable = 1e-13;
+  constexpr int kUnknowns = kNodes - 1;
   double speed[kUnknowns], scale[kUnknowns], known[kUnknowns], size[kUnknowns];
   for (int i = 0; i < kUnknowns; ++i) {
     known[i] = free[i + 1] - coupling[i + 1][0] * values.friction[0];
@@ -172,7 +171,7 @@ bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& 
   LawValues<kUnknowns> at;
   double previous = HUGE_VAL;
   bool solved = false;
-  for (int iteration = 0; iteration < kMaxIterations && !solved; ++iteration) {
+  for (int iteration = 0; iteration < kNewtonSteps && !solved; ++iteration) {
     at.evaluate(law, speed, &values.load[1]);
     if (iteration == 0) {
       const double largest = *std::max_element(at.force, at.force + kUnknowns);
@@ -187,11 +186,11 @@ bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& 
       for (int j = 0; j < kUnknowns; ++j) sum += coupling[i + 1][j + 1] * at.force[j];
       step[i] = sum;
       // Below the tight bound nothing is left to compare: one test of the common case.
-      if (!(std::abs(sum) <= kTight * scale[i])) {
+      if (!(std::abs(sum) <= kTightNodes * scale[i])) {
         worst = std::max(worst, std::isfinite(sum) ? std::abs(sum) / scale[i] : HUGE_VAL);
       }
     }
-    if (worst == 0.0 || (worst <= kAcceptable && worst >= 0.5 * previous)) break;
+    if (worst == 0.0 || (worst <= kAcceptableNodes && worst >= 0.5 * previous)) break;
     if (worst == HUGE_VAL) return false;
     previous = worst;
     double jacobian[kUnknowns][kUnknowns];
@@ -203,7 +202,7 @@ bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& 
     if (!NewtonStep(jacobian, step, speed)) return false;
     solved = LeavesRounding(at, step, size, scale);
     if (solved) at.shift(step);
-    if (iteration + 1 == kMaxIterations && !solved) return false;
+    if (iteration + 1 == kNewtonSteps && !solved) return false;
   }
   for (int i = 0; i < kUnknowns; ++i) {
     values.speed[i + 1] = speed[i];

@@ -1,5 +1,7 @@
 #include "libsim/dynamics/event/sliding/contact_friction.hpp"
 
+#include "libsim/dynamics/event/sliding/tuning.hpp"
+
 namespace modcal::event {
 namespace {
 
@@ -116,8 +118,6 @@ double ThermalFriction::newton_step(const NodeMatrix& coupling, double step) {
 
 bool ThermalFriction::solve(const NodeMatrix& coupling, const NodeVector& free, double step,
                             NodeValues& values) {
-  constexpr int kMaxIterations = 25;
-  constexpr double kTight = 4e-16, kAcceptable = 1e-13;
   step_ = step;
   node_rise_[0] = rise_;
   node_[0] = heating(rise_, values.speed[0], values.load[0]);
@@ -126,14 +126,15 @@ bool ThermalFriction::solve(const NodeMatrix& coupling, const NodeVector& free, 
   }
   const double width = law_.softening_width;
   double previous = HUGE_VAL;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < kNewtonSteps; ++iteration) {
     evaluate(coupling, free, values);
     const double change = newton_step(coupling, step);
     if (change == HUGE_VAL) return false;
     const double share = change / (width + std::abs(rise_));
-    const bool settled = share <= kTight || (share <= kAcceptable && change >= 0.5 * previous);
+    const bool settled =
+        share <= kTightThermal || (share <= kAcceptableNodes && change >= 0.5 * previous);
     // What a correction leaves is about its square.
-    if (settled || share * share <= 0.01 * kTight) {
+    if (settled || share * share <= 0.01 * kTightThermal) {
       evaluate(coupling, free, values);
       for (int i = 1; i < rule_.nodes; ++i) values.slope[i] = slope(node_[i]);
       return true;

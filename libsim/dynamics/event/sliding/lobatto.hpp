@@ -7,6 +7,7 @@
 
 namespace modcal::event {
 
+/// Most nodes of a rule. Fixed by: the largest rule that kernels are compiled for.
 inline constexpr int kMaxNodes = 5;
 
 /// s = 2…5 Lobatto nodes 0 = c_1 < … < c_s = 1 with their Lagrange polynomials.

@@ -4,6 +4,7 @@
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
 #include "libsim/dynamics/event/sliding/contact_friction.hpp"
+#include "libsim/dynamics/event/sliding/tuning.hpp"
 
 namespace modcal::event {
 
@@ -90,8 +91,6 @@ class Sliding {
   Friction& friction() { return law_; }
 
  private:
-  static constexpr int kDeepestLevel = 44;
-
   int wanted_level() const {
     int level = model_.first_level();
     double number = -slope_ * std::ldexp(model_.grid_step(), -level) / model_.effective_mass();
@@ -150,8 +149,7 @@ class Sliding {
   // Scale of a guess from the polynomial of the last step. None so far to go by, or one so short
   // that its polynomial is rounding this far out: a constant.
   double extrapolation(double length) const {
-    constexpr double kFarthest = 16.0;
-    return length <= kFarthest * last_length_ ? length / last_length_ : 0.0;
+    return length <= kFarthestGuess * last_length_ ? length / last_length_ : 0.0;
   }
 
   Advance refined(double x) {
@@ -199,17 +197,13 @@ class Sliding {
   // the last one crossed v_c = 0: the step that is kept ends there and nothing is interpolated.
   // `values`: the solution of the first trial where it is `solved`.
   Advance any_step(double x, double end, PlanarVector& state, NodeValues values, bool solved) {
-    constexpr int kMaxTrials = 20;
-    // The force polynomial errs by its distance from a node: a correction of the share ε adds ε² of
-    // what it errs between them.
-    constexpr double kLastCorrection = 1e-3;
     Series free;
     model_.free_series(state, free);
     double length = end - x;
     const double series_length = model_.series_step() / model_.grid_step();
     NodeVector powers = powers_;
     double from = 1.0, scale = extrapolation(length);
-    for (int trial = 0; trial < kMaxTrials; ++trial) {
+    for (int trial = 0; trial < kSwitchTrials; ++trial) {
       if (trial > 0 && length < 1e-15) {
         last_length_ = 0.0;
         return {x, Outcome::kAttached};

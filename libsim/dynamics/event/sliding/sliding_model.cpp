@@ -1,11 +1,11 @@
 #include "libsim/dynamics/event/sliding/sliding_model.hpp"
 
+#include "libsim/dynamics/event/sliding/tuning.hpp"
+
 namespace modcal::event {
 namespace {
 
 using Complex = std::complex<double>;
-
-constexpr double kSeriesPhase = 1.3;
 
 // Weight of Z in the contact velocity: v = Re Σ a Z, a = 1 + iζω/ω_d.
 Complex velocity_weight(const ContactModes& modes, std::size_t n) {
@@ -46,7 +46,7 @@ SlidingModel::SlidingModel(const ContactModes& modes, const LobattoRule& rule, d
         std::abs(velocity_weight(modes, n)) * std::pow(std::abs(modes.pole[n]), rule_.nodes);
     free_factor_.set(n, std::exp(modes.pole[n] * grid_step));
   }
-  while (series_step_ * largest_pole_ > kSeriesPhase) {
+  while (series_step_ * largest_pole_ > kSlidingPhase) {
     series_step_ *= 0.5;
     ++first_level_;
   }

@@ -11,7 +11,8 @@ namespace modcal::event {
 using NodeVector = LobattoRule::Row;
 using NodeMatrix = std::array<NodeVector, kMaxNodes>;
 
-/// Terms of the power series in time; |λ|h ≤ 1.3 leaves 1.3²²/22! = 3e-19.
+/// Terms of the power series in time.
+/// Fixed by: rounding; |λ|h ≤ kSlidingPhase leaves 1.3²²/22! = 3e-19.
 inline constexpr std::size_t kSeriesTerms = 22;
 using Series = std::array<double, kSeriesTerms>;
 
