@@ -66,6 +66,7 @@ void add_record_commands(CLI::App& app, const Chosen& chosen);
 void add_new_command(CLI::App& app, const Chosen& chosen);
 void add_reproduce_command(CLI::App& app, const Chosen& chosen);
 void add_stored_commands(CLI::App& app, const Chosen& chosen);
+void add_compare_command(CLI::App& app, const Chosen& chosen);
 void add_submit_command(CLI::App& app, const Chosen& chosen);
 /// After all others: they are what it speaks of.
 void add_tree_commands(CLI::App& app, const Chosen& chosen);

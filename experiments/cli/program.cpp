@@ -14,6 +14,7 @@ void add_commands(CLI::App& app, const Chosen& chosen) {
   add_new_command(app, chosen);
   add_reproduce_command(app, chosen);
   add_stored_commands(app, chosen);
+  add_compare_command(app, chosen);
   add_submit_command(app, chosen);
   add_tree_commands(app, chosen);
 }

@@ -98,6 +98,10 @@ PublishedTable read_published(const std::filesystem::path& path);
 std::vector<SweepRow> sweep_rows(const std::vector<SweepTask>& tasks,
                                  const PublishedTable& published);
 
+/// Correlation against noise: a panel a side; where several estimators are compared, every estimate
+/// in one panel, for the short windows and for the long one.
+report::Figure correlation_figure(const std::string& name, const std::vector<SweepRow>& rows);
+
 /// Adds table, figure and acceptance of the finished tasks to a result that knows how many failed
 /// and how many are not run yet.
 void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& axes,

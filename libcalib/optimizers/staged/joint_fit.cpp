@@ -90,11 +90,10 @@ class JointFit {
     fit_.chi2 = fit_.stages.back().chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
     fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
-    const bool explained =
-        std::none_of(fit_.single.begin(), fit_.single.end(), [](const ContinuationResult& single) {
-          const ScoreTest* cause = first_cause(single.tests);
-          return cause && cause->refuses();
-        });
+    const bool explained = std::ranges::none_of(fit_.single, [](const auto& single) {
+      const ScoreTest* cause = first_cause(single.tests);
+      return cause && cause->refuses();
+    });
     fit_.right = fit_.fits && !fit_.priors.contradicted() && !fit_.contradicts_itself() &&
                  explained && !tuned_apart(fit_.single);
     if (!unknowns().is_law()) return;
