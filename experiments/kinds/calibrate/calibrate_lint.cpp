@@ -158,9 +158,7 @@ std::vector<Finding> CalibrateOptions::lint() const {
   };
   refuse(inversion.wave_based, "wave_based");
   refuse(inversion.has_model_based, "model_based");
-  append(findings, lint_figures(inversion.figures,
-                                {"waveforms", "spectra", "parameter_curves", "objectives",
-                                 "frequency_errors"},
+  append(findings, lint_figures(inversion.figures, FigureContent::kFrequencyErrors,
                                 stated_duration(inversion.observation)));
   lint_making(findings, "calibration.objective", [&] { calibration.objective.make(); });
   lint_making(findings, "calibration.optimizer", [&] { calibration.optimizer.make(); });

@@ -52,8 +52,8 @@ void PluckThenBowOptions::visit(OptionVisitor& visitor) {
 std::vector<Finding> PluckThenBowOptions::lint() const {
   std::vector<Finding> findings = lint_observation(stroke());
   append(findings, lint_scores(score, stroke()));
-  append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"},
-                                stroke().truth.scene.duration));
+  append(findings,
+         lint_figures(figures, FigureContent::kParameterCurves, stroke().truth.scene.duration));
   lint_making(findings, "inversion", [&] { InversionRecipe recipe(inversion); });
   lint_making(findings, "refinement.objective", [&] { refinement.objective.make(); });
   lint_making(findings, "refinement.optimizer", [&] { refinement.optimizer.make(); });
