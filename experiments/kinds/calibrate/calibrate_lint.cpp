@@ -72,7 +72,7 @@ constexpr double kLeastPeriods = 2.0;
 
 void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
                     const StringModel& string, const Scene& scene, std::vector<Finding>& findings) {
-  if (pluck.start.selected() == PluckRecordOptions().start.selected()) {
+  if (pluck.start.make()->at_rest()) {
     add_finding(findings, path + ".initial",
                 "a string at rest has no free decay: pluck it (initial: {{type: pluck, "
                 "...}}), or name the record of its pluck");

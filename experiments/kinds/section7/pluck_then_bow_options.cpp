@@ -70,7 +70,7 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
     pluck.start.make();
     if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
   });
-  if (pluck.start.selected() == "rest") {
+  if (pluck.start.make()->at_rest()) {
     add_finding(
         findings, "pluck.initial",
         "a string at rest has no free decay: pluck it (pluck.initial: {{type: pluck, ...}})");
