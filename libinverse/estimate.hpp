@@ -100,6 +100,8 @@ struct Estimate {
   std::vector<double> side_misfit;
   /// Nothing is identified above it, and the deviations are of the part below [Hz]; NaN: no limit.
   double band_limit = std::numeric_limits<double>::quiet_NaN();
+  /// Misfit J of the innovations of an observer; NaN: the estimate has none.
+  double misfit = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::pair<std::string, double>> figures;  ///< "sigma_T" and the like, for reports
   std::vector<std::string> notes;  ///< what was chosen by itself, one sentence each
   std::vector<std::string> warnings;

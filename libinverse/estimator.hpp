@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -66,6 +67,8 @@ class Estimator {
   virtual std::optional<bool> feels_bending() const { return false; }
   /// Whether the regularizer and the parameter choice of the method play a part.
   virtual bool filters() const { return false; }
+  /// Sides of its estimates; none: one, which has the estimator's name.
+  virtual std::vector<std::string> sides() const { return {}; }
   /// Numbers a sample of the record that the work on one holds at a time, about.
   virtual double numbers_per_sample() const { return 30.0; }
 

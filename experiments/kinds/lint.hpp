@@ -33,10 +33,10 @@ inline double stated_duration(const ObservationOptions& options) {
 /// Windows of figures that hold nothing of a record of `duration`, each at its own place.
 std::vector<Finding> lint_figure_windows(const std::vector<FigureOptions>& figures,
                                          double duration);
-/// Ids used twice, contents that this kind of experiment does not have; windows, unless the
+/// Ids used twice, contents after the `last` that this kind of experiment has; windows, unless the
 /// duration is NaN: not known before the record is read.
-std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
-                                  const std::vector<std::string_view>& contents, double duration);
+std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures, FigureContent last,
+                                  double duration);
 /// What require_priors() has against each fixed parameter, prior and correlation, at its own place.
 /// path: of the unknowns.
 std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include "experiments/kinds/lint.hpp"
 
@@ -20,8 +21,8 @@ std::vector<Finding> lint_figure_windows(const std::vector<FigureOptions>& figur
   return findings;
 }
 
-std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
-                                  const std::vector<std::string_view>& contents, double duration) {
+std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures, FigureContent last,
+                                  double duration) {
   std::vector<Finding> findings;
   if (!std::isnan(duration)) findings = lint_figure_windows(figures, duration);
   std::set<std::string> ids;
@@ -40,14 +41,15 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
       add_finding(findings, place, "figure {} has no quantities: name one, or leave the key out",
                   figure.id);
     }
-    const bool identified = std::ranges::count(contents, "spectra") > 0;
+    const bool identified = last >= FigureContent::kSpectra;
     for (const std::string& name : figure.quantities) {
-      if (!identified || (name != "R1" && name != "R2")) continue;
+      if (!identified || quantity_of(name).identified != nullptr) continue;
       add_finding(findings, place,
                   "figure {} draws {}, which is measured, not identified: use y, v or f_c",
                   figure.id, name);
     }
-    if (std::ranges::count(contents, figure.content) == 0) {
+    if (figure.drawn() > last) {
+      const auto contents = std::span(kFigureContents).first(static_cast<std::size_t>(last) + 1);
       add_finding(findings, place + ".content",
                   "figure {}: this kind of experiment has no {}; it has {}", figure.id,
                   figure.content, fmt::join(contents, ", "));

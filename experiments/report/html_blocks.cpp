@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 
 #include "experiments/report/encoding.hpp"
@@ -70,12 +71,14 @@ std::string heading_html(const Column& column, bool is_text) {
 
 std::string cell_html(const Cell& cell, const Column& column, bool is_text) {
   const std::string text = cell_text(cell, column);
+  const auto* const number = std::get_if<double>(&cell.value);
+  const bool is_undefined = cell.shown.empty() && number != nullptr && std::isnan(*number);
   std::string kind = is_text ? "text" : "number";
   std::string mark;
   if (cell.highlight == Highlight::kPass) {
     kind += " pass";
     mark = " <span class=\"verdict\" title=\"passed\">✓</span>";
-  } else if (cell.highlight == Highlight::kFail || text == "NaN") {
+  } else if (cell.highlight == Highlight::kFail || is_undefined) {
     kind += " fail";
     mark = " <span class=\"verdict\" title=\"failed\">✗</span>";
   }

@@ -134,7 +134,7 @@ std::vector<std::filesystem::path> journals_in(const std::filesystem::path& fold
   std::vector<std::filesystem::path> files;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-    if (entry.path().extension() == ".journal") files.push_back(entry.path());
+    if (entry.path().extension() == kJournalExtension) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;

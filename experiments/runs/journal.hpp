@@ -48,7 +48,9 @@ void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
 /// line is no longer what it was.
 JournalRecord record_of_line(const std::filesystem::path& file, std::string_view line);
 
-/// Journals (*.journal) of a folder by name; none where there is no such folder.
+inline constexpr std::string_view kJournalExtension = ".journal";
+
+/// Journals of a folder by name; none where there is no such folder.
 std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);
 
 /// Appends records to one journal; several threads may use one writer, one process one journal.

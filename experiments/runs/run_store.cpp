@@ -198,7 +198,9 @@ RunStore::RunStore(const std::filesystem::path& folder, const Shard& shard,
       is_whole_(shard.is_whole()),
       lock_(journals_, shard),
       finished_(folder, program),
-      writer_(journals_ / fmt::format("shard-{}-of-{}.journal", shard.index, shard.count), program),
+      writer_(
+          journals_ / fmt::format("shard-{}-of-{}{}", shard.index, shard.count, kJournalExtension),
+          program),
       own_file_(finished_.reader().add(writer_.file().path())) {}
 
 void RunStore::finish() {

@@ -1,5 +1,6 @@
 #include "experiments/study/figures.hpp"
 
+#include "libsim/base/words.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -12,10 +13,7 @@ void TimeWindow::visit(OptionVisitor& visitor) {
 void FigureOptions::visit(OptionVisitor& visitor) {
   visitor("id", "name of the figure's files", {.required = true}, id);
   visitor("title", "title; empty: that of the experiment", title);
-  visitor(
-      "content", "what is drawn",
-      {.choices = {"waveforms", "spectra", "parameter_curves", "objectives", "frequency_errors"}},
-      content);
+  visitor("content", "what is drawn", {.choices = choices_of(kFigureContents)}, content);
   visitor("quantities", "rows of waveforms and spectra", {.choices = {"y", "v", "f_c", "R1", "R2"}},
           quantities);
   visitor("windows", "parts of the record; none: all of it", windows);
@@ -25,6 +23,10 @@ void FigureOptions::visit(OptionVisitor& visitor) {
           {.unit = "Hz", .range = Range::non_negative()}, lowest_frequency);
   visitor("highest_frequency", "right end of a spectrum; top_mode: 1.1 times the highest mode",
           {.unit = "Hz", .range = Range::positive(), .word = "top_mode"}, highest_frequency);
+}
+
+FigureContent FigureOptions::drawn() const {
+  return enum_of<FigureContent>(kFigureContents, "content of a figure", content);
 }
 
 const Quantity& quantity_of(std::string_view name) {
@@ -66,9 +68,14 @@ struct Layout {
   std::vector<std::string> columns;  // their labels
   double sample_rate = 0.0;
   double duration = 0.0;
+  bool reactions = false;  // side by side: one row for both, one column an end
 
   Figure empty() const {
     return {.id = options.id, .title = options.title, .columns = columns.size()};
+  }
+  report::Axis axis_of(const std::string& quantity) const {
+    return {.label = reactions ? "reaction" : quantity,
+            .unit = std::string(quantity_of(quantity).unit)};
   }
 };
 
@@ -92,11 +99,6 @@ std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double dura
 }
 
 namespace {
-
-report::Axis axis_of(const std::string& quantity) {
-  if (quantity == "reaction") return {.label = quantity, .unit = "N"};
-  return {.label = quantity, .unit = std::string(quantity_of(quantity).unit)};
-}
 
 Series window_series(const Trace& trace, const TimeWindow& window, double rate) {
   Series series{.label = trace.label, .style = trace.style, .color = trace.color};
@@ -142,7 +144,7 @@ Figure waveform_figure(const Layout& layout, const TraceLookup& traces) {
       for (std::size_t column = 0; column < layout.columns.size(); ++column) {
         Panel panel{.title = layout.columns[column],
                     .x = {.label = "time", .unit = "s"},
-                    .y = axis_of(quantity)};
+                    .y = layout.axis_of(quantity)};
         for (const Trace& trace : traces(quantity, column)) {
           panel.series.push_back(window_series(trace, window, layout.sample_rate));
         }
@@ -162,7 +164,7 @@ Figure spectrum_figure(const Layout& layout, double highest, const TraceLookup& 
   if (!std::isnan(layout.options.highest_frequency)) highest = layout.options.highest_frequency;
   for (const std::string& quantity : layout.options.quantities) {
     for (std::size_t column = 0; column < layout.columns.size(); ++column) {
-      const report::Axis axis = axis_of(quantity);
+      const report::Axis axis = layout.axis_of(quantity);
       Panel panel{
           .title = layout.columns[column],
           .x = {.label = "frequency", .unit = "Hz"},
@@ -225,10 +227,10 @@ std::vector<double> zero_mean(std::vector<double> samples) {
 
 Figure simulation_figure(const FigureOptions& options, const Simulation& simulation) {
   FigureOptions rows = options;
-  const bool reactions = std::all_of(options.quantities.begin(), options.quantities.end(),
-                                     [](const std::string& q) { return q == "R1" || q == "R2"; });
-  // Reactions stand side by side: one row a window, one column an end.
-  if (reactions) rows.quantities = {"reaction"};
+  const bool reactions = std::ranges::all_of(options.quantities, [](const std::string& name) {
+    return quantity_of(name).identified == nullptr;
+  });
+  if (reactions) rows.quantities.resize(1);
   const auto simulated = [&simulation](const std::string& name) -> const Signal& {
     return simulation.*quantity_of(name).simulated;
   };
@@ -236,7 +238,8 @@ Figure simulation_figure(const FigureOptions& options, const Simulation& simulat
   return waveform_figure({.options = rows,
                           .columns = reactions ? options.quantities : std::vector<std::string>{""},
                           .sample_rate = any.sample_rate,
-                          .duration = any.duration()},
+                          .duration = any.duration(),
+                          .reactions = reactions},
                          [&](const std::string& quantity, std::size_t column) {
                            const std::string& name =
                                reactions ? options.quantities[column] : quantity;
@@ -251,7 +254,8 @@ Figure identification_figure(const FigureOptions& options, const Observation& ob
                 .sample_rate = rate,
                 .duration = static_cast<double>(observation.samples()) / rate};
   for (const SideIdentification& side : sides) layout.columns.push_back(side.estimate.label);
-  if (options.content == "parameter_curves") return parameter_curve_figure(layout, sides);
+  const FigureContent content = options.drawn();
+  if (content == FigureContent::kParameterCurves) return parameter_curve_figure(layout, sides);
   // The identified signals have no static part, so the true ones are shown without theirs.
   std::map<std::string, std::vector<double>> truth;
   for (const std::string& name : options.quantities) {
@@ -273,7 +277,7 @@ Figure identification_figure(const FigureOptions& options, const Observation& ob
     }
     return result;
   };
-  if (options.content != "spectra") return waveform_figure(layout, traces);
+  if (content != FigureContent::kSpectra) return waveform_figure(layout, traces);
   const double top = 1.1 * observation.basis.frequency(observation.basis.size() - 1);
   return spectrum_figure(layout, top, traces);
 }

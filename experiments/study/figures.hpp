@@ -17,6 +17,12 @@ struct TimeWindow {
   void visit(OptionVisitor& visitor);
 };
 
+/// What a figure draws. In the order of kFigureContents: of signals, of the choice of a parameter,
+/// of a search; every kind of experiment has the first ones.
+enum class FigureContent { kWaveforms, kSpectra, kParameterCurves, kObjectives, kFrequencyErrors };
+inline constexpr std::array<std::string_view, 5> kFigureContents = {
+    "waveforms", "spectra", "parameter_curves", "objectives", "frequency_errors"};
+
 /// One figure: what it shows and of which part. Rows are quantities × windows, columns the two
 /// ends.
 struct FigureOptions {
@@ -29,6 +35,9 @@ struct FigureOptions {
   double lowest_frequency = 20.0;
   double highest_frequency = std::numeric_limits<double>::quiet_NaN();
   void visit(OptionVisitor& visitor);
+  FigureContent drawn() const;  ///< throws InvalidInput for another word
+  bool draws_signals() const { return drawn() <= FigureContent::kSpectra; }
+  bool draws_search() const { return drawn() >= FigureContent::kObjectives; }
 };
 
 /// Throws InvalidInput where the window holds nothing of the record; the figure's `id` is named.

@@ -65,7 +65,7 @@ std::vector<std::string_view> names_where(Test test, std::vector<std::string_vie
   return names;
 }
 
-// Algorithms that another may start.
+// Algorithms that another may start, behind the word for the one that suits it.
 const std::vector<std::string_view>& local_choices() {
   static const auto names = names_where(
       [](const auto& row) { return row.use == NloptUse::kInTheBox && row.name[0] == 'L'; },
@@ -213,11 +213,14 @@ NloptOptimizer::NloptOptimizer(const Options& options) : options_(options) {
   row_ = &*found;
   MODCAL_REQUIRE(row_->use != NloptUse::kRefused, "NLopt's {} is refused: {}", row_->name,
                  row_->refusal);
-  if (options.local_algorithm == "automatic") return;
   const auto& local = local_choices();
-  MODCAL_REQUIRE(std::find(local.begin(), local.end(), options.local_algorithm) != local.end(),
-                 "\"{}\" is no local algorithm; usable: {}", options.local_algorithm,
-                 fmt::join(local, ", "));
+  const auto choice = std::find(local.begin(), local.end(), options.local_algorithm);
+  if (choice == local.begin()) {  // automatic
+    options_.local_algorithm = row_->needs_gradient() ? "LD_LBFGS" : "LN_BOBYQA";
+    return;
+  }
+  MODCAL_REQUIRE(choice != local.end(), "\"{}\" is no local algorithm; usable: {}",
+                 options.local_algorithm, fmt::join(local, ", "));
   MODCAL_REQUIRE(row_->use == NloptUse::kTwoLevels,
                  "NLopt's {} starts no local algorithm: leave local_algorithm out", row_->name);
   MODCAL_REQUIRE(row_->needs_gradient() || options.local_algorithm[1] == 'N',
@@ -244,9 +247,7 @@ StopReason NloptOptimizer::search(Evaluator& evaluator) const {
     require_ok(nlopt_set_upper_bounds(optimizer, evaluator.upper().data()), optimizer);
   }
   if (row_->use == NloptUse::kTwoLevels) {
-    const std::string automatic = row_->needs_gradient() ? "LD_LBFGS" : "LN_BOBYQA";
-    const bool chosen = options_.local_algorithm != "automatic";
-    const Handle local = create(chosen ? options_.local_algorithm : automatic, n, options_);
+    const Handle local = create(options_.local_algorithm, n, options_);
     require_ok(nlopt_set_local_optimizer(optimizer, local.get()), optimizer);  // takes a copy
   }
   // The generator belongs to the thread and is seeded from the clock by default.

@@ -191,6 +191,10 @@ bool ParameterOptions::every_frequency() const {
   return frequency_choice(frequencies) == FrequencyChoice::kAll;
 }
 
+bool ParameterOptions::no_frequency() const {
+  return frequency_choice(frequencies) == FrequencyChoice::kNone;
+}
+
 std::vector<std::string> ParameterOptions::names(std::size_t modes_of_model) const {
   const bool listed = frequency_choice(frequencies) == FrequencyChoice::kListed;
   MODCAL_REQUIRE(listed == !modes.empty(),

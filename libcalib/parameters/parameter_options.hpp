@@ -112,6 +112,7 @@ struct ParameterOptions {
   ParameterRanges ranges;
   void visit(OptionVisitor& visitor);
   bool every_frequency() const;
+  bool no_frequency() const;
   /// Names for a model of N modes. Throws InvalidInput where modes are listed but not asked for, or
   /// nothing is free.
   std::vector<std::string> names(std::size_t modes_of_model) const;

@@ -62,10 +62,11 @@ void start_two_exponential(ParameterSpace& space, const SlipPicture& /*slip*/) {
 
 struct Law {
   std::string_view name;
-  void (*start)(ParameterSpace& space, const SlipPicture& slip);  // from the exponential one
+  // From the exponential one; null: it is this.
+  void (*start)(ParameterSpace& space, const SlipPicture& slip) = nullptr;
 };
-constexpr std::array kLaws = {Law{"exponential", [](ParameterSpace&, const SlipPicture&) {}},
-                              Law{"hyperbolic", start_hyperbolic}, Law{"thermal", start_thermal},
+constexpr std::array kLaws = {Law{"exponential"}, Law{"hyperbolic", start_hyperbolic},
+                              Law{"thermal", start_thermal},
                               Law{"two_exponential", start_two_exponential}};
 
 }  // namespace
@@ -76,11 +77,12 @@ std::vector<std::string_view> friction_law_names() {
   return names;
 }
 
-ParameterSpace with_friction_law(const ParameterSpace& space, std::string_view law,
-                                 const SlipPicture& slip) {
+std::optional<ParameterSpace> with_friction_law(const ParameterSpace& space, std::string_view law,
+                                                const SlipPicture& slip) {
   const auto row = std::ranges::find(kLaws, law, &Law::name);
   MODCAL_REQUIRE(row != kLaws.end(), "unknown friction law \"{}\": {} can be compared", law,
                  fmt::join(friction_law_names(), ", "));
+  if (row->start == nullptr) return std::nullopt;
   ParameterSpace result = space;
   row->start(result, slip);
   return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,10 +45,10 @@ struct SlipPicture {
 };
 
 /// Free parameters of `space`, fitted with the exponential law, carried over to another law: its
-/// own shape parameters are freed, the force at rest and at the slip speed stay. Throws
-/// InvalidInput for an unknown name.
-ParameterSpace with_friction_law(const ParameterSpace& space, std::string_view law,
-                                 const SlipPicture& slip);
+/// own shape parameters are freed, the force at rest and at the slip speed stay. None for the
+/// exponential law itself. Throws InvalidInput for an unknown name.
+std::optional<ParameterSpace> with_friction_law(const ParameterSpace& space, std::string_view law,
+                                                const SlipPicture& slip);
 
 /// J and BIC of a law at θ(0) of `space` under the gains that suit it.
 FrictionCandidate judge_friction_law(const ObserverRuns& runs, const ParameterSpace& space,

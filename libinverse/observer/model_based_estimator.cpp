@@ -103,8 +103,8 @@ class Estimation {
   ParameterSpace best_law(const ParameterSpace& space, const SlipPicture& slip) {
     std::vector<ParameterSpace> fits;
     for (const std::string& law : options_.laws) {
-      ParameterSpace fit = with_friction_law(space, law, slip);
-      if (law != "exponential") fit = fitted(fit, {kWide}, 8);
+      const std::optional<ParameterSpace> carried = with_friction_law(space, law, slip);
+      ParameterSpace fit = carried ? fitted(*carried, {kWide}, 8) : space;
       fit = fitted(fit, {kMiddle}, 8);
       GainSchedule schedule = {kMiddle};
       if (options_.laws.size() > 1) {

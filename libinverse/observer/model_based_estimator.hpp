@@ -73,7 +73,7 @@ struct ModelBasedResult : observer::ObserverMotion {
 /// whose parameters are fitted by prediction error, with a beam search over gains. Needs both
 /// reactions, of a record that starts at rest. It assumes a friction law of the exponential family:
 /// it stands beside a linear estimate, never in its place. As one of the estimators it has the side
-/// "model"; its misfit J and what the static level rests on stand in the estimate's figures.
+/// "model"; what the static level rests on stands in the estimate's figures.
 class ModelBasedEstimator final : public Estimator {
  public:
   using Options = ModelBasedOptions;
@@ -87,6 +87,7 @@ class ModelBasedEstimator final : public Estimator {
                             std::span<const double> left, std::span<const double> right,
                             const StopToken& stop = {}, bool recorded = false,
                             std::optional<bool> bending = {}) const;
+  std::vector<std::string> sides() const override { return {"model"}; }
   double numbers_per_sample() const override { return 100.0; }
 
  private:

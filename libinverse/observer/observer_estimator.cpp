@@ -39,8 +39,8 @@ class PreparedObserverEstimate final : public PreparedEstimator {
     }
     if (method.outputs.velocity) estimate.result.velocity = std::move(result.velocity);
     estimate.unaliased_force = std::move(result.unaliased_force);
-    estimate.figures = {{"misfit", result.misfit},
-                        {"steady_misfit", result.steady_misfit},
+    estimate.misfit = result.misfit;
+    estimate.figures = {{"steady_misfit", result.steady_misfit},
                         {"misfit_deviation", result.misfit_deviation},
                         {"static_level", result.static_part.level},
                         {"static_deviation", result.static_part.deviation}};

@@ -67,7 +67,7 @@ BenchmarkLabels BenchmarkExperiment::labels_of(std::size_t task) const {
 // What stands against an optimizer that can be made is that it cannot minimize the objective: a row
 // with its reason, not a mistake.
 bool BenchmarkExperiment::is_excused(const CalibrateOptions& cell, const Finding& finding) const {
-  if (finding.path != "calibration.optimizer") return false;
+  if (finding.path != kOptimizerPath) return false;
   std::vector<Finding> own;
   lint_making(own, finding.path, [&] { cell.calibration.optimizer.make(); });
   return own.empty();

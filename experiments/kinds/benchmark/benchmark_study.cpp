@@ -129,7 +129,7 @@ std::vector<double> bounds_of(const CalibrateOptions& options, TruthCache& truth
   // The outputs of the task's own truth, so that both share one simulation.
   const LimitCase records = limit_case(question, truths, {.force = true});
   const ExpectedLimit limit = expected_limit(records);
-  if (options.calibration.parameters.frequencies == "none") {
+  if (options.calibration.parameters.no_frequency()) {
     return law_bounds(limit, options, records.truth.basis);
   }
   std::vector<double> bounds;
@@ -213,7 +213,7 @@ std::string reason_of(const BenchmarkOutcome& outcome) {
 
 FrequencyBounds::Bounds FrequencyBounds::of(const CalibrateOptions& options, TruthCache& truths) {
   const ParameterOptions& parameters = options.calibration.parameters;
-  const bool searched = parameters.law || parameters.frequencies != "none";
+  const bool searched = parameters.law || !parameters.no_frequency();
   if (!searched || options.inversion.observation.measurement.noise_level <= 0.0) return nullptr;
   return known_.get(key_of(options), [&] {
     return std::make_shared<const std::vector<double>>(bounds_of(options, truths));

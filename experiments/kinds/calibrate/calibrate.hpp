@@ -82,6 +82,9 @@ struct FurtherStrokes {
   void require_fit_to(const ObservationOptions& first, const CalibrationOptions& calibration) const;
 };
 
+/// Where lints say what stands against the optimizer.
+inline constexpr const char* kOptimizerPath = "calibration.optimizer";
+
 struct CalibrateOptions {
   static constexpr std::string_view kForStructures =
       "state structure: {table: modes.yaml, record: {file: ..., responses: [{channel: ...}]}}";

@@ -58,8 +58,8 @@ void lint_pairing(const CalibrationOptions& calibration, std::vector<Finding>& f
     return std::any_of(findings.begin(), findings.end(),
                        [path](const Finding& finding) { return finding.path.starts_with(path); });
   };
-  if (stands("calibration.objective") || stands("calibration.optimizer")) return;
-  lint_making(findings, "calibration.optimizer", [&] {
+  if (stands("calibration.objective") || stands(kOptimizerPath)) return;
+  lint_making(findings, kOptimizerPath, [&] {
     const std::string mismatch = calibration.optimizer.make()->explain_unsatisfied(
         calibration.objective.selected(), calibration.objective.make()->capabilities());
     MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
@@ -72,7 +72,7 @@ constexpr double kLeastPeriods = 2.0;
 
 void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
                     const StringModel& string, const Scene& scene, std::vector<Finding>& findings) {
-  if (pluck.start.selected() == PluckRecordOptions().start.selected()) {
+  if (pluck.start.make()->at_rest()) {
     add_finding(findings, path + ".initial",
                 "a string at rest has no free decay: pluck it (initial: {{type: pluck, "
                 "...}}), or name the record of its pluck");
@@ -158,12 +158,10 @@ std::vector<Finding> CalibrateOptions::lint() const {
   };
   refuse(inversion.wave_based, "wave_based");
   refuse(inversion.has_model_based, "model_based");
-  append(findings, lint_figures(inversion.figures,
-                                {"waveforms", "spectra", "parameter_curves", "objectives",
-                                 "frequency_errors"},
+  append(findings, lint_figures(inversion.figures, FigureContent::kFrequencyErrors,
                                 stated_duration(inversion.observation)));
   lint_making(findings, "calibration.objective", [&] { calibration.objective.make(); });
-  lint_making(findings, "calibration.optimizer", [&] { calibration.optimizer.make(); });
+  lint_making(findings, kOptimizerPath, [&] { calibration.optimizer.make(); });
   lint_pairing(calibration, findings);
   lint_making(findings, "calibration.budget", [&] { calibration.budget.require_valid(); });
   lint_making(findings, "further_strokes",

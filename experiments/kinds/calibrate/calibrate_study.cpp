@@ -15,9 +15,9 @@ void add_search_figures(const std::vector<FigureOptions>& figures,
                         const CalibrationOutcome& outcome, StudyResult& result) {
   for (const FigureOptions& figure : figures) {
     report::Figure drawn;
-    if (figure.content == "objectives") {
+    if (figure.drawn() == FigureContent::kObjectives) {
       drawn = objective_figure(figure, outcome);
-    } else if (figure.content == "frequency_errors") {
+    } else if (figure.drawn() == FigureContent::kFrequencyErrors) {
       drawn = frequency_error_figure(figure, outcome);
     } else {
       continue;

@@ -261,7 +261,8 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
 }
 
 std::string shown_unit(const std::string& parameter) {
-  if (parameter == "damping") return "(factor)";
+  const std::optional<ParameterName> name = parse_parameter(parameter);
+  if (name == ParameterName{.kind = ParameterKind::kDampingFactor}) return "(factor)";
   const std::string unit(unit_of_parameter(parameter));
   return unit == "1" ? "" : unit;
 }

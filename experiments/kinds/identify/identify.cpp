@@ -103,7 +103,7 @@ std::vector<Finding> IdentifyOptions::lint_recorded() const {
 
 std::vector<Finding> IdentifyOptions::lint_simulated() const {
   std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
-  if (truth.scene.start.selected() == "rest") {
+  if (truth.scene.start.make()->at_rest()) {
     add_finding(
         findings, "scene.initial",
         "a string at rest has no free decay: pluck it (scene.initial: {{type: pluck, ...}})");

@@ -27,8 +27,8 @@ void InvertOptions::visit(OptionVisitor& visitor) {
 
 std::vector<Finding> InvertOptions::lint() const {
   std::vector<Finding> findings = lint_inversion(*this);
-  append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"},
-                                stated_duration(observation)));
+  append(findings,
+         lint_figures(figures, FigureContent::kParameterCurves, stated_duration(observation)));
   return findings;
 }
 
@@ -88,7 +88,7 @@ OutputRequest truth_outputs(const std::vector<FigureOptions>& figures, bool all)
                         .left_reaction = true,
                         .right_reaction = true};
   for (const FigureOptions& figure : figures) {
-    if (figure.content != "waveforms" && figure.content != "spectra") continue;
+    if (!figure.draws_signals()) continue;
     for (const std::string& name : figure.quantities) request.*quantity_of(name).wanted = true;
   }
   return request;
@@ -123,7 +123,7 @@ void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
                                 const std::vector<SideIdentification>& sides, StudyResult& result) {
   for (const FigureOptions& figure : figures) {
-    if (figure.content == "objectives" || figure.content == "frequency_errors") continue;
+    if (figure.draws_search()) continue;
     result.blocks.emplace_back(identification_figure(figure, observation, sides));
   }
 }

@@ -113,7 +113,9 @@ void write_level(report::RowWriter& row, const LimitSummary& level) {
 // RMSE, bias and reported deviation of one parameter of the law. B on strings bowed off the nodes
 // loses information to the unknown force at high noise: 1.3 bounds are allowed there.
 void judge_row(const LimitRow& row, auto miss) {
-  const double allowed = row.parameter == "B" && row.noise_percent > 9.0 ? 1.3 : 1.2;
+  const bool is_inharmonicity =
+      parse_parameter(row.parameter) == ParameterName{.kind = ParameterKind::kInharmonicity};
+  const double allowed = is_inharmonicity && row.noise_percent > 9.0 ? 1.3 : 1.2;
   if (!(row.ratio() <= allowed)) {
     miss(fmt::format("{} at {:.2f} bounds", row.parameter, row.ratio()));
   }

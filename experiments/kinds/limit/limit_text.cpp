@@ -41,8 +41,10 @@ std::string law_lines(const ExpectedLimit& limit) {
 std::string free_lines(const ExpectedLimit& limit) {
   std::string text;
   for (const ParameterLimit& row : limit.parameters) {
-    const bool elsewhere =
-        row.parameter == "x_c" || row.parameter == "damping" || row.parameter.starts_with("zeta_");
+    const std::optional<ParameterName> name = parse_parameter(row.parameter);
+    const bool elsewhere = name == ParameterName{.kind = ParameterKind::kContact} ||
+                           name == ParameterName{.kind = ParameterKind::kDampingFactor} ||
+                           (name && name->kind == ParameterKind::kDampingRatio);
     if (elsewhere || std::isnan(row.free)) continue;
     const std::string unit = shown_unit(row.parameter);
     text += fmt::format("  {:<{}} sd {:.3g}{}{}\n", row.parameter, name_width(limit), row.free,

@@ -1,5 +1,7 @@
 #include "experiments/kinds/schelleng/schelleng.hpp"
 
+#include "libsim/base/words.hpp"
+
 namespace modcal {
 namespace {
 
@@ -53,15 +55,19 @@ void SchellengOptions::visit(OptionVisitor& visitor) {
   visitor("start",
           "motion at t = 0: helmholtz (which motion is kept up) or rest (which "
           "motion is reached)",
-          {.choices = {"helmholtz", "rest"}}, start);
+          {.choices = choices_of(kMapStarts)}, start);
   visitor("criteria", "where the regimes part", criteria);
+}
+
+MapStart SchellengOptions::starts_in() const {
+  return enum_of<MapStart>(kMapStarts, "start of the map", start);
 }
 
 Scene SchellengOptions::cell_scene(std::size_t cell) const {
   Scene result = scene;
   result.bow.position = positions.center(position_of(cell)) * scene.string.length;
   result.bow.normal_force = forces.center(force_of(cell));
-  if (start == "helmholtz") {
+  if (starts_in() == MapStart::kHelmholtz) {
     result.initial =
         helmholtz_motion(make_modal_basis(scene.string), result.bow.position, scene.bow.velocity);
   }

@@ -19,6 +19,10 @@ struct MapAxis {
   double center(std::size_t index) const;
 };
 
+/// Motion at t = 0; in the order of kMapStarts.
+enum class MapStart { kHelmholtz, kRest };
+inline constexpr std::array<std::string_view, 2> kMapStarts = {"helmholtz", "rest"};
+
 struct SchellengOptions {
   Scene scene;
   Choice<Simulator> simulator{"modal_event"};
@@ -37,6 +41,7 @@ struct SchellengOptions {
   std::size_t force_of(std::size_t cell) const {
     return cell / static_cast<std::size_t>(positions.count);
   }
+  MapStart starts_in() const;  ///< throws InvalidInput for another word
   Scene cell_scene(std::size_t cell) const;
   /// What a cell is judged by.
   OutputRequest outputs() const;

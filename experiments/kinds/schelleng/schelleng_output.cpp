@@ -88,7 +88,7 @@ report::Figure map_figure(const SchellengOptions& options, const CellOutcomes& o
           "Motion in the last {:g} periods of {:g} s, started {}. Lines: the bow-force limits "
           "of Schelleng (1973) with the losses of the modes.",
           options.criteria.periods, options.scene.duration,
-          options.start == "helmholtz" ? "in ideal Helmholtz motion" : "from rest"),
+          options.starts_in() == MapStart::kHelmholtz ? "in ideal Helmholtz motion" : "from rest"),
       .panels = {panel}};
 }
 

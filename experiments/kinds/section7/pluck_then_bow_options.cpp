@@ -52,8 +52,8 @@ void PluckThenBowOptions::visit(OptionVisitor& visitor) {
 std::vector<Finding> PluckThenBowOptions::lint() const {
   std::vector<Finding> findings = lint_observation(stroke());
   append(findings, lint_scores(score, stroke()));
-  append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"},
-                                stroke().truth.scene.duration));
+  append(findings,
+         lint_figures(figures, FigureContent::kParameterCurves, stroke().truth.scene.duration));
   lint_making(findings, "inversion", [&] { InversionRecipe recipe(inversion); });
   lint_making(findings, "refinement.objective", [&] { refinement.objective.make(); });
   lint_making(findings, "refinement.optimizer", [&] { refinement.optimizer.make(); });
@@ -70,7 +70,7 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
     pluck.start.make();
     if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
   });
-  if (pluck.start.selected() == "rest") {
+  if (pluck.start.make()->at_rest()) {
     add_finding(
         findings, "pluck.initial",
         "a string at rest has no free decay: pluck it (pluck.initial: {{type: pluck, ...}})");

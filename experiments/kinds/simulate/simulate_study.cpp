@@ -48,7 +48,7 @@ std::vector<Finding> SimulateOptions::lint_signals() const {
   if (outputs.empty() && has_scene) {
     add_finding(findings, "outputs", "nothing is computed: name an output, or leave the key out");
   }
-  append(findings, lint_figures(figures, {"waveforms"},
+  append(findings, lint_figures(figures, FigureContent::kWaveforms,
                                 has_scene ? truth.scene.duration : structure.duration));
   for (const FigureOptions& figure : figures) {
     for (const std::string& quantity : figure.quantities) {

@@ -31,9 +31,9 @@ bool is_numbered(const std::string& side) { return side == "1" || side == "2"; }
 
 // Sides that a failed task would have had.
 std::vector<std::string> sides_of(const std::string& estimator) {
-  if (estimator == "one_sided") return {"1", "2"};
-  if (estimator == "model_based") return {"model"};
-  return {estimator};
+  std::vector<std::string> sides = Choice<Estimator>(estimator).make()->sides();
+  if (sides.empty()) sides = {estimator};
+  return sides;
 }
 
 std::string method_of(const std::vector<std::string>& axes,
@@ -99,13 +99,8 @@ TaskOutcome run_cell(const InvertOptions& options, const StudyContext& context) 
        identify(observation, model, options.inversion, {.force = true}, &options.score,
                 &context.work.inversions)) {
     const ChosenParameter& choice = side.estimate.result.choice;
-    TaskScores scores{side.estimate.side, choice.parameter(), choice.status, side.scores,
-                      side.whole};
-    for (const auto& [name, value] : side.estimate.figures) {
-      if (name == "misfit") scores.misfit = value;
-    }
-    scores.warnings = side.estimate.warnings;
-    outcome.sides.push_back(std::move(scores));
+    outcome.sides.push_back({side.estimate.side, choice.parameter(), choice.status, side.scores,
+                             side.whole, side.estimate.misfit, side.estimate.warnings});
   }
   return outcome;
 }

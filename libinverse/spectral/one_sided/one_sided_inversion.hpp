@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "libinverse/estimator.hpp"
@@ -84,6 +85,7 @@ class OneSidedEstimator final : public Estimator {
   };
   explicit OneSidedEstimator(const Options& /*options*/) {}
   bool filters() const override { return true; }
+  std::vector<std::string> sides() const override { return {"1", "2"}; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

@@ -22,6 +22,8 @@ class InitialMotion {
   virtual ~InitialMotion() = default;
   /// Modal state of the string at t = 0: empty or as many values as modes.
   virtual ModalState state(const ModalBasis& basis) const = 0;
+  /// Whether the string does not move by itself.
+  virtual bool at_rest() const { return false; }
 };
 
 /// The string lies straight and at rest.
@@ -32,6 +34,7 @@ class Rest final : public InitialMotion {
   };
   explicit Rest(const Options& /*options*/) {}
   ModalState state(const ModalBasis& /*basis*/) const override { return {}; }
+  bool at_rest() const override { return true; }
 };
 
 /// The string is released at t = 0 from the triangle with its corner at x_p, of height h, rounded
