@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "libcalib/noise/tuning.hpp"
@@ -43,7 +44,7 @@ class Excluded {
 };
 
 std::vector<NoiseRow> rows_of(const ProjectedLikelihood& likelihood, const ModelPoint& point,
-                              std::size_t knots) {
+                              double octaves) {
   const WhitenedRecord& record = likelihood.record();
   std::vector<double> residuals, gain;
   std::vector<Complex> force, left, right;
@@ -58,11 +59,10 @@ std::vector<NoiseRow> rows_of(const ProjectedLikelihood& likelihood, const Model
   const double top = record.omega[record.bins - 1];
   std::vector<NoiseRow> rows;
   for (std::size_t k = 0; k < record.bins; ++k) {
-    const double place = static_cast<double>(knots - 1) + std::log2(record.omega[k] / top);
-    if (place < 0.0 || excluded.holds(record.omega[k])) continue;
+    const double below = -std::log2(record.omega[k] / top);
+    if (below > octaves || excluded.holds(record.omega[k])) continue;
     NoiseRow& row = rows.emplace_back();
-    row.knot = std::min(static_cast<std::size_t>(place), knots - 2);
-    row.next = place - static_cast<double>(row.knot);
+    row.octaves = below;
     row.power = std::pow(residuals[2 * k], 2) + std::pow(residuals[2 * k + 1], 2);
     const double per = 1.0 / record.noise_at(k).of_residual(left[k], right[k]);
     const double mixed = -2.0 * per * std::real(std::conj(left[k]) * right[k]);
@@ -99,18 +99,9 @@ double probability_of_run(double power, double bins) {
   return std::min(1.0, bins / kLength * gsl_cdf_gamma_Q(power, kLength, 1.0));
 }
 
-}  // namespace
-
-NoiseFit fit_noise(const ProjectedLikelihood& likelihood, const ModelPoint& point) {
-  const WhitenedRecord& record = likelihood.record();
-  std::size_t knots = 2;
-  for (std::size_t bins = record.bins; bins >= 4 * kLeastBins; bins /= 2) ++knots;
-  std::vector<NoiseRow> rows = rows_of(likelihood, point, knots);
-  const double top = record.omega[record.bins - 1] / (2.0 * pi);
-  const auto bins = static_cast<double>(rows.size());
-  if (bins < kFewestBins) return {.misfit = true};
-  const NoiseModel model(rows, knots);
-  const double price = std::log(bins);
+// The noise by the form of least BIC; nothing where more than noise is left.
+std::optional<NoiseSpectrum> noise_alone(const NoiseModel& model, double bins, double top) {
+  const std::size_t knots = model.knots();
   double least = std::numeric_limits<double>::infinity();
   NoiseForm best;
   Eigen::VectorXd levels = model.white(), best_factors;
@@ -119,15 +110,33 @@ NoiseFit fit_noise(const ProjectedLikelihood& likelihood, const ModelPoint& poin
   for (const NoiseForm& form :
        {NoiseForm{1, 0}, NoiseForm{1, 1}, NoiseForm{knots, 0}, NoiseForm{knots, knots}}) {
     if (form.coherence == 0) factors = levels;
-    const double criterion = model.fit(form, factors) + price * form.parameters();
+    const double criterion = model.fit(form, factors) + std::log(bins) * form.parameters();
     if (!(criterion < least)) continue;
     least = criterion;
     best = form;
     best_factors = factors;
   }
-  if (probability(model.excess(best, best_factors)) > kNoiseAlone &&
-      probability_of_run(model.largest_run(best_factors, kLump), bins) > kNoiseAlone) {
-    return {.spectrum = model.spectrum(best, best_factors, top), .error = 1.0 / std::sqrt(bins)};
+  const bool alone = probability(model.excess(best, best_factors)) > kNoiseAlone &&
+                     probability_of_run(model.largest_run(best_factors, kLump), bins) > kNoiseAlone;
+  return alone ? std::optional(model.spectrum(best, best_factors, top)) : std::nullopt;
+}
+
+}  // namespace
+
+NoiseFit fit_noise(const ProjectedLikelihood& likelihood, const ModelPoint& point) {
+  const WhitenedRecord& record = likelihood.record();
+  std::size_t octaves = 1;
+  for (std::size_t bins = record.bins; bins >= 4 * kLeastBins; bins /= 2) ++octaves;
+  std::vector<NoiseRow> rows = rows_of(likelihood, point, static_cast<double>(octaves));
+  const double top = record.omega[record.bins - 1] / (2.0 * pi);
+  const auto bins = static_cast<double>(rows.size());
+  if (bins < kFewestBins) return {.misfit = true};
+  // Finer knots are for noise with a hill that an octave does not show.
+  for (const std::size_t per_octave : {std::size_t{1}, kFineKnots}) {
+    const NoiseModel model(rows, {.count = per_octave * octaves + 1, .per_octave = per_octave});
+    if (auto found = noise_alone(model, bins, top)) {
+      return {.spectrum = std::move(*found), .error = 1.0 / std::sqrt(bins)};
+    }
   }
   return {.misfit = true,
           .level = quiet_power(std::move(rows)),

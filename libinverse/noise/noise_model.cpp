@@ -17,6 +17,20 @@ Index place(std::size_t knot, std::size_t term) { return static_cast<Index>(knot
 
 }  // namespace
 
+NoiseModel::NoiseModel(std::vector<NoiseRow> rows, const NoiseKnots& knots)
+    : rows_(std::move(rows)), knots_(knots.count), per_octave_(knots.per_octave) {
+  const auto place_of = [&knots](const NoiseRow& row) {
+    return static_cast<double>(knots.count - 1) -
+           static_cast<double>(knots.per_octave) * row.octaves;
+  };
+  std::erase_if(rows_, [&](const NoiseRow& row) { return place_of(row) < 0.0; });
+  for (NoiseRow& row : rows_) {
+    const double place = place_of(row);
+    row.knot = std::min(static_cast<std::size_t>(place), knots.count - 2);
+    row.next = place - static_cast<double>(row.knot);
+  }
+}
+
 Eigen::VectorXd NoiseModel::white() const {
   return Eigen::VectorXd::Zero(static_cast<Index>(kNoiseTerms * knots_));
 }
@@ -89,8 +103,8 @@ NoiseSpectrum NoiseModel::spectrum(const NoiseForm& form, const Eigen::VectorXd&
   const Eigen::VectorXd theta = covariances(factors);
   for (std::size_t j = form.levels > 1 ? 0 : knots_ - 1; j < knots_; ++j) {
     const double* at = theta.data() + place(j, 0);
-    result.knots.push_back({std::ldexp(top, static_cast<int>(j) + 1 - static_cast<int>(knots_)),
-                            {at[0], at[1], at[2]}});
+    const double octaves = static_cast<double>(knots_ - 1 - j) / static_cast<double>(per_octave_);
+    result.knots.push_back({top * std::exp2(-octaves), {at[0], at[1], at[2]}});
   }
   return result;
 }

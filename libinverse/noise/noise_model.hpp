@@ -15,10 +15,17 @@ namespace modcal {
 /// of the signal's power.
 struct NoiseRow {
   static constexpr std::size_t kNoise = 3, kTerms = 4;
+  double octaves = 0.0;  ///< below the top knot
   std::size_t knot = 0;  ///< the lower one
   double next = 0.0;     ///< share of the upper one, in [0, 1]
   double power = 0.0;    ///< |e|²
   std::array<double, kTerms> by{};
+};
+
+/// Knots of a spectrum, evenly spaced in ln f, the last at its top.
+struct NoiseKnots {
+  std::size_t count = 2;  ///< two or more
+  std::size_t per_octave = 1;
 };
 
 /// How many values over frequency levels and coherence have: one or one for each knot; of
@@ -32,9 +39,9 @@ struct NoiseForm {
 /// C = L Lᵀ with L = (a 0; βd d).
 class NoiseModel {
  public:
-  /// Two knots or more.
-  NoiseModel(std::vector<NoiseRow> rows, std::size_t knots)
-      : rows_(std::move(rows)), knots_(knots) {}
+  /// Of rows by their octaves; those below the lowest knot are left out.
+  NoiseModel(std::vector<NoiseRow> rows, const NoiseKnots& knots);
+  std::size_t knots() const { return knots_; }
 
   /// Factors of unit levels with nothing in common.
   Eigen::VectorXd white() const;
@@ -49,7 +56,7 @@ class NoiseModel {
   Excess excess(const NoiseForm& form, const Eigen::VectorXd& factors) const;
   /// Largest Σ |e|²/v over `length` bins behind each other.
   double largest_run(const Eigen::VectorXd& factors, std::size_t length) const;
-  /// Knots an octave apart, the last at `top` [Hz]; of one level that alone.
+  /// The last knot at `top` [Hz]; of one level that alone.
   NoiseSpectrum spectrum(const NoiseForm& form, const Eigen::VectorXd& factors, double top) const;
 
  private:
@@ -67,7 +74,7 @@ class NoiseModel {
   Eigen::MatrixXd bonds() const;
 
   std::vector<NoiseRow> rows_;
-  std::size_t knots_;
+  std::size_t knots_, per_octave_;
 };
 
 }  // namespace modcal

@@ -120,8 +120,10 @@ double TableDamping::ratio(const DampedMode& mode) const {
 void MeasuredDamping::Options::visit(OptionVisitor& visitor) {
   visitor("modes", "numbers of the modes whose damping was measured",
           {.range = Range::at_least(1), .required = true}, modes);
-  visitor("ratios", "their damping ratios", {.range = {0.0, 1.0, true, false}, .required = true},
-          ratios);
+  visitor("ratios",
+          "their damping ratios; all modes, these too, have those of the polynomial (type: table "
+          "takes ratios as they are)",
+          {.range = {0.0, 1.0, true, false}, .required = true}, ratios);
   visitor("degree", "degree of the polynomial of the mode number", {.range = Range::closed(0, 10)},
           degree);
 }
@@ -185,7 +187,7 @@ Registry<DampingLaw> DampingLaw::registry() {
   static constexpr std::array kTable = {
       entry_of<DampingLaw, ConstantDamping>("constant", "one damping ratio for all modes"),
       entry_of<DampingLaw, MeasuredDamping>(
-          "measured", "ratios of some modes, extrapolated by a polynomial of the mode number"),
+          "measured", "a polynomial of the mode number through the ratios of some modes"),
       entry_of<DampingLaw, PolynomialDamping>("polynomial",
                                               "damping ratio as a polynomial of the mode number"),
       entry_of<DampingLaw, TableDamping>("table", "damping ratio against frequency"),

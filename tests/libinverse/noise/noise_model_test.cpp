@@ -18,7 +18,7 @@ std::vector<NoiseRow> rows_of(std::uint64_t seed, double signal) {
   for (std::size_t k = 0; k < kRows; ++k) {
     const double* u = &uniform[4 * k];
     NoiseRow& row = rows[k];
-    row.next = static_cast<double>(k) / kRows;
+    row.octaves = 1.0 - static_cast<double>(k) / kRows;
     row.by = {u[0], 1.0 - u[0], 0.0, u[1]};
     row.power = -std::log(u[2]) * (1.0 + signal * u[1]);
   }
@@ -29,7 +29,7 @@ std::vector<NoiseRow> rows_of(std::uint64_t seed, double signal) {
 TEST(NoiseModel, ExcessOfNoiseAloneIsAChiSquare) {
   double mean = 0.0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const NoiseModel model(rows_of(seed, 0.0), 2);
+    const NoiseModel model(rows_of(seed, 0.0), {.count = 2});
     Eigen::VectorXd factors = model.white();
     model.fit({1, 0}, factors);
     const NoiseModel::Excess excess = model.excess({1, 0}, factors);
@@ -40,7 +40,7 @@ TEST(NoiseModel, ExcessOfNoiseAloneIsAChiSquare) {
 }
 
 TEST(NoiseModel, ExcessKnowsASignal) {
-  const NoiseModel model(rows_of(1, 3.0), 2);
+  const NoiseModel model(rows_of(1, 3.0), {.count = 2});
   Eigen::VectorXd factors = model.white();
   model.fit({1, 0}, factors);
   const NoiseModel::Excess excess = model.excess({1, 0}, factors);
