@@ -131,6 +131,24 @@ TEST(Departures, AreThoseFromTheLaw) {
 }
 
 // Modes 46 and above of f0 = 196 Hz lie above 9 kHz.
+// Modes that follow a law lie on the law that is found with them; one that leaves it need not.
+TEST(Contradiction, IsAModeThatFollowsTheLawAndLiesOffIt) {
+  const Found found;
+  ContinuationResult result;
+  result.found_law = {.fundamental = 196.0, .inharmonicity = 0.0};
+  result.frequencies_free = true;
+  result.modes = found.verdicts();
+  result.law_width = 1e-5;
+  EXPECT_FALSE(result.contradicts_itself());
+  EXPECT_LT(result.farthest_follower(), 1.0);
+  // By ten times √(2² + 1²)·10⁻⁵.
+  result.modes[20].frequency *= 1.0 + 22.4e-5;
+  EXPECT_NEAR(result.farthest_follower(), 10.0, 0.1);
+  EXPECT_TRUE(result.contradicts_itself());
+  result.modes[20].tie = LawTie::kLeaves;
+  EXPECT_FALSE(result.contradicts_itself());
+}
+
 TEST(ModesOutOfBand, AreNotSeenWhereOthersStandAboveThem) {
   Found found;
   ModeSight sight{.seen = found.seen, .error = found.seen};
