@@ -23,7 +23,7 @@ std::array<double, 2> levels_of(const std::vector<NoiseRow>& rows) {
     std::copy_if(rows.begin(), rows.end(), std::back_inserter(kept), [&](const NoiseRow& row) {
       return row.power <= kLargestMisfit * (row.by[0] * levels[0] + row.by[1] * levels[1]);
     });
-    const NoiseModel model(std::move(kept), 2);
+    const NoiseModel model(std::move(kept), {.count = 2});
     Eigen::VectorXd factors = model.white();
     model.fit({}, factors);
     const NoiseCovariance found = model.spectrum({}, factors, 1.0).knots.front().noise;
@@ -53,7 +53,8 @@ SensorNoiseLevel JointInversion::lowered_noise(const ReactionPair& reactions,
     const Complex apart = workspace.spectrum[0][k] * right - workspace.spectrum[1][k] * left;
     const double expected = read[0] * std::norm(right) + read[1] * std::norm(left);
     if (!(expected > 0.0)) continue;
-    rows.push_back({.power = std::norm(apart) / weight_power_ / expected,
+    rows.push_back({.octaves = 1.0,
+                    .power = std::norm(apart) / weight_power_ / expected,
                     .by = {read[0] * std::norm(right) / expected,
                            read[1] * std::norm(left) / expected, 0.0, 0.0}});
   }
