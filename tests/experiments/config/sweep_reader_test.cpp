@@ -73,13 +73,13 @@ TEST(SweepReader, PutsASectionInBeforeWhatLiesInIt) {
               ElementsAre("m.noise=1 m={rate: 40}", "m.noise=2 m={rate: 40}"));
   EXPECT_THAT(
       cells("product: {m.noise: [1, 2], m: [{rate: 40}, {noise: 3}]}"),
-      ElementsAre("1:57: m.noise is an axis of its own: leave it out here, or that axis out"));
+      ElementsAre("1:52: m.noise is an axis of its own: leave it out here, or that axis out"));
 }
 
 // What stands there twice would be a draw that counts twice.
 TEST(SweepReader, RefusesACellThatStandsThereAlready) {
   EXPECT_THAT(cells("product: {a: [1, 2], b: [3]}\ninclude: [{a: 2, b: 3}]"),
-              ElementsAre("2:14: the cell {a: 2, b: 3} stands in the list already, and its draw "
+              ElementsAre("2:15: the cell {a: 2, b: 3} stands in the list already, and its draw "
                           "would count twice: leave it out"));
   EXPECT_THAT(cells("include: [{a: 1}, {a: 1}]")[0], HasSubstr("stands in the list already"));
   EXPECT_THAT(cells("product: {a: [1]}\nexclude: [{a: 1}]\ninclude: [{a: 1}]"), ElementsAre("a=1"));

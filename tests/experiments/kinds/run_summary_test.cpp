@@ -63,7 +63,8 @@ TEST(RunSummary, DrawsACellThatIsOnNoAxis) {
   EXPECT_THAT(figure.panels.at(0).series.at(0).x, ElementsAre(1.0, 2.0));
   const LoadedExperiment words = loaded_from(sweep_of(
       "{product: {simulator.type: [modal_exact]}, include: [{scene.bow.position: 45 mm}]}"));
-  const auto& map = first_of<report::Table>(summed_up(list_of(words)));
+  const StudyResult of_words = summed_up(list_of(words));
+  const auto& map = first_of<report::Table>(of_words);
   EXPECT_EQ(map.columns.at(0).key, "t.x [N] by simulator.type");
   EXPECT_EQ(map.columns.at(1).key, "as stated");
   EXPECT_NO_THROW(report::check_table(map));

@@ -32,7 +32,7 @@ TEST(NoiseFit, FindsSpectraAndCoherence) {
 }
 
 // White noise and nine times its power about 5 kHz, 1.7 kHz wide: knots an octave apart take what
-// they miss of it for a misfit.
+// they miss of it for a misfit. Straight lines between thirds of one miss a quarter of its top.
 TEST(NoiseFit, FollowsAHillNarrowerThanAnOctave) {
   constexpr double kPole = 0.9, kTurns = 2.0 * std::numbers::pi * 5000.0 / 51200.0, kShare = 0.25;
   const BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
@@ -57,8 +57,8 @@ TEST(NoiseFit, FollowsAHillNarrowerThanAnOctave) {
     const Complex delay = std::polar(1.0, -2.0 * std::numbers::pi * f / 51200.0);
     const double truth = std::norm(1.0 + kShare / (1.0 - 2.0 * kPole * std::cos(kTurns) * delay +
                                                    kPole * kPole * delay * delay));
-    EXPECT_NEAR(found.spectrum.at(f).left / truth, 1.0, 0.2);
-    EXPECT_NEAR(found.spectrum.at(f).right / truth, 1.0, 0.2);
+    EXPECT_NEAR(found.spectrum.at(f).left / truth, 1.0, 0.3);
+    EXPECT_NEAR(found.spectrum.at(f).right / truth, 1.0, 0.3);
   }
 }
 
