@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -15,7 +14,6 @@
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/any_optimizer.hpp"
-#include "tests/refusal.hpp"
 
 namespace modcal::optimizer_test {
 namespace {
@@ -155,29 +153,6 @@ TEST_P(AnyOptimizer, AThrowingClockInterruptsTheSearch) {
 TEST_P(OfSquares, SaysThatAValueIsNone) {
   const ValueOnly function(2, [](std::span<const double> x) { return x[0]; });
   EXPECT_NE(optimizer().explain_unsatisfied(function), "");
-}
-
-/// Says that it is a sum of squares, of nothing.
-class NoResiduals final : public ObjectiveFunction {
- public:
-  std::string_view name() const override { return "no_residuals"; }
-  std::size_t dimension() const override { return 2; }
-  Capabilities capabilities() const override { return {.gradient = true, .least_squares = true}; }
-  mutable std::atomic<int> calls = 0;
-
- private:
-  void do_evaluate(std::span<const double> /*x*/, const ObjectiveOutputs& outputs) const override {
-    ++calls;
-    if (outputs.value) *outputs.value = 0.0;
-    if (outputs.gradient) std::fill_n(outputs.gradient, 2, 0.0);
-  }
-};
-
-TEST_P(OfSquares, RefusesAnEmptyListOfResiduals) {
-  const NoResiduals function;
-  EXPECT_THAT(refusal_of([&] { optimizer().minimize(function, box(0.0, 0.0, -1.0, 1.0), {}); }),
-              HasSubstr("\"no_residuals\" is empty: give it one or more"));
-  EXPECT_EQ(function.calls, 0);
 }
 
 TEST_P(OfAnyValue, NotANumberIsARejectedStep) {
