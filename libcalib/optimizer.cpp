@@ -26,7 +26,14 @@ std::string optimizers_for(const Capabilities& has) {
 }  // namespace
 
 std::string Optimizer::explain_unsatisfied(const ObjectiveFunction& function) const {
-  return explain_unsatisfied(function.name(), function.capabilities());
+  const Capabilities known = function.capabilities();
+  if (needs().sum_of_squares() && known.sum_of_squares() && function.residual_count() == 0) {
+    return fmt::format(
+        "optimizer \"{}\" needs residuals, and the list of those of objective \"{}\" is empty: "
+        "give it one or more",
+        name(), function.name());
+  }
+  return explain_unsatisfied(function.name(), known);
 }
 
 std::string Optimizer::explain_unsatisfied(std::string_view objective,

@@ -111,16 +111,7 @@ void require_linear_sensors(const EndRecord& ends, const ObservationOptions& opt
 // Whether the reactions tell the string.
 bool check_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
   const RecordOptions& record = options.record;
-  MODCAL_REQUIRE(signals.sample_rate > 2.0 * options.string.fundamental,
-                 "{}: a sample rate of {:g} Hz does not show a string of f0 = {:g} Hz: check the "
-                 "units of the rate or of the time column (a bare number is in Hz or s), and f0",
-                 record.file, signals.sample_rate, options.string.fundamental);
-  const double duration = static_cast<double>(signals.size()) / signals.sample_rate;
-  MODCAL_REQUIRE(
-      duration * options.string.fundamental >= 2.0,
-      "{}: {} samples at {:g} Hz are {:.3g} s, less than two periods of the string of "
-      "{:g} Hz: its modes cannot be told apart; record for longer, or check the rate's unit",
-      record.file, signals.size(), signals.sample_rate, duration, options.string.fundamental);
+  require_periods(record.file, options.string.fundamental, signals.size(), signals.sample_rate);
   require_whole_beginning(options, signals);
   require_whole_band(record, signals);
   const EndRecord ends = ends_of(*signals.left, *signals.right);
@@ -181,6 +172,20 @@ std::size_t key_of_check(const ObservationOptions& options, const RecordedSignal
 }
 
 }  // namespace
+
+void require_periods(std::string_view name, double fundamental, std::size_t samples,
+                     double sample_rate) {
+  MODCAL_REQUIRE(sample_rate > 2.0 * fundamental,
+                 "{}: a sample rate of {:g} Hz does not show a string of f0 = {:g} Hz: check the "
+                 "units of the rate or of the time column (a bare number is in Hz or s), and f0",
+                 name, sample_rate, fundamental);
+  const double duration = static_cast<double>(samples) / sample_rate;
+  MODCAL_REQUIRE(
+      duration * fundamental >= 2.0,
+      "{}: {} samples at {:g} Hz are {:.3g} s, less than two periods of the string of "
+      "{:g} Hz: its modes cannot be told apart; record for longer, or check the rate's unit",
+      name, samples, sample_rate, duration, fundamental);
+}
 
 bool require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
   // A record is checked before a run, by the run, and by every task of a list: what passed once

@@ -106,6 +106,15 @@ void add_anti_aliased(const ObservationOptions& options, TruthCache& cache,
 
 }  // namespace
 
+std::string explain_hidden_modes(const ModalBasis& basis, double sample_rate) {
+  const double top = basis.frequency(basis.size() - 1);
+  if (top < 0.5 * sample_rate) return {};
+  return fmt::format(
+      "the highest mode ({:g} Hz) is not below half the sample rate ({:g} Hz): use "
+      "fewer modes or a higher rate",
+      top, sample_rate);
+}
+
 std::string truth_key(TruthOptions options, double sample_rate, const OutputRequest& outputs) {
   return fingerprint([&](OptionVisitor& visitor) {
     options.scene.visit(visitor);
@@ -199,13 +208,9 @@ Observation observe(const ObservationOptions& options, const OutputRequest& trut
   Observation observation = options.has_scene ? observe_scene(options, truth_outputs, cache, key)
                                               : observe_record(options, folder, cache.stop());
   observation.fundamental = options.string_model().fundamental;
-  const double top = observation.basis.frequency(observation.basis.size() - 1);
-  if (!(top < 0.5 * observation.sample_rate)) {
-    throw WrongKey(
-        options.has_scene ? "scene.string.modes" : "string.modes",
-        fmt::format("the highest mode ({:g} Hz) is not below half the sample rate ({:g} Hz): use "
-                    "fewer modes or a higher rate",
-                    top, observation.sample_rate));
+  const std::string hidden = explain_hidden_modes(observation.basis, observation.sample_rate);
+  if (!hidden.empty()) {
+    throw WrongKey(options.has_scene ? "scene.string.modes" : "string.modes", hidden);
   }
   if (oversampling > 1 && options.has_scene && observation.reference) {
     add_anti_aliased(options, cache, oversampling, observation);

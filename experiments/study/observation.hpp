@@ -139,6 +139,14 @@ inline constexpr End kEnds[] = {End::kLeft, End::kRight};
 
 // Whether both reactions of a record are those of the string that is stated.
 
+/// Why a sample rate [Hz] does not show the highest mode; empty where it does.
+std::string explain_hidden_modes(const ModalBasis& basis, double sample_rate);
+
+/// Throws InvalidInput where a record, called by its name, does not show the fundamental [Hz] at
+/// its rate or holds less than two periods of it.
+void require_periods(std::string_view name, double fundamental, std::size_t samples,
+                     double sample_rate);
+
 /// Throws InvalidInput where both recorded reactions hold another relation than that of a string's
 /// ends (fit_end_relations()): nothing but noise, copies, a turned sign, exchanged ends, no common
 /// string within 3 % of f₀ and 2 % of L, or one that is broken off somewhere in the record. False:

@@ -11,14 +11,15 @@ namespace modcal {
 namespace {
 
 void require_valid(const Variable& variable) {
+  const std::string unit = variable.unit.empty() ? "" : " " + variable.unit;
   MODCAL_REQUIRE(variable.lower <= variable.initial && variable.initial <= variable.upper &&
                      std::isfinite(variable.lower) && std::isfinite(variable.upper),
-                 "initial value {:g} {} of \"{}\" must lie in its finite bounds [{:g}, {:g}]",
-                 variable.initial, variable.unit, variable.name, variable.lower, variable.upper);
+                 "initial value {:g}{} of \"{}\" must lie in its finite bounds [{:g}, {:g}]",
+                 variable.initial, unit, variable.name, variable.lower, variable.upper);
   MODCAL_REQUIRE(variable.lower < variable.upper,
-                 "\"{}\" has no room between its bounds {:g} and {:g} {}: leave it out of the free "
+                 "\"{}\" has no room between its bounds {:g} and {:g}{}: leave it out of the free "
                  "parameters or widen its range",
-                 variable.name, variable.lower, variable.upper, variable.unit);
+                 variable.name, variable.lower, variable.upper, unit);
   MODCAL_REQUIRE(variable.scale > 0.0 && std::isfinite(variable.scale),
                  "scale {:g} of \"{}\" must be > 0", variable.scale, variable.name);
 }

@@ -28,7 +28,7 @@ class RegistryTable {
   /// more than kMost.
   void add(std::string name, std::string summary, std::shared_ptr<const Product> product) {
     const std::lock_guard lock(mutex_);
-    MODCAL_REQUIRE(!name.empty(), "a {} needs a name", Product::kKind);
+    MODCAL_REQUIRE(!name.empty(), "the name of the {} is empty: give it one", Product::kKind);
     for (const auto& row : rows()) {
       MODCAL_REQUIRE(row.name != name, "the {} \"{}\" is there already: take another name",
                      Product::kKind, name);

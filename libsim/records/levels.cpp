@@ -19,21 +19,6 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 using Samples = std::span<const double>;
 using Fault = std::optional<SampleFault>;
 
-Fault find_extreme_magnitude(Samples samples) {
-  const auto magnitude = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  const auto largest = std::max_element(samples.begin(), samples.end(), magnitude);
-  const double square = *largest * *largest * static_cast<double>(samples.size());
-  if (square >= std::numeric_limits<double>::min() && square < std::numeric_limits<double>::max()) {
-    return std::nullopt;
-  }
-  return SampleFault{
-      static_cast<std::size_t>(largest - samples.begin()),
-      fmt::format("{:g} is the largest magnitude, whose square is outside the range of double "
-                  "precision: no sensor reads that; repair the sample, or state the unit that the "
-                  "numbers have",
-                  *largest)};
-}
-
 Fault find_spike(Samples samples) {
   if (samples.size() < kShortestNoiseRecord) return std::nullopt;
   std::vector<double> sorted(samples.begin(), samples.end());
@@ -192,6 +177,21 @@ bool rests_at_zero(Samples samples) {
 }
 
 }  // namespace
+
+std::optional<SampleFault> find_extreme_magnitude(std::span<const double> samples) {
+  const auto magnitude = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto largest = std::max_element(samples.begin(), samples.end(), magnitude);
+  const double square = *largest * *largest * static_cast<double>(samples.size());
+  if (square >= std::numeric_limits<double>::min() && square < std::numeric_limits<double>::max()) {
+    return std::nullopt;
+  }
+  return SampleFault{
+      static_cast<std::size_t>(largest - samples.begin()),
+      fmt::format("{:g} is the largest magnitude, whose square is outside the range of double "
+                  "precision: no sensor reads that; repair the sample, or state the unit that the "
+                  "numbers have",
+                  *largest)};
+}
 
 Clipping find_clipping(std::span<const double> samples) {
   const Levels levels = measure_levels(samples);

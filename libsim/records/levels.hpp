@@ -90,4 +90,7 @@ struct SampleFault {
 /// A run of equal samples at the beginning is silence, too.
 std::optional<SampleFault> find_fault(std::span<const double> samples);
 
+/// The second of these alone.
+std::optional<SampleFault> find_extreme_magnitude(std::span<const double> samples);
+
 }  // namespace modcal

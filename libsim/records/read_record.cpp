@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -115,8 +116,10 @@ Recording read_record(const std::filesystem::path& path, const std::string& form
   if (const auto recording = find_given(name)) return read_given(*recording, name, options);
   require_regular_file(path);  // before its name is asked for a format
   if (!options.headers_only) require_memory(path, format, options.memory);
+  ReadOptions judged = options;
+  judged.memory = std::numeric_limits<double>::infinity();
   const auto before = state_of(path);
-  Recording recording = record_format(path, format).read(path, options);
+  Recording recording = record_format(path, format).read(path, judged);
   if (state_of(path) != before) {
     recording.add_problem(
         fmt::format("{}: the file was written to while it was read; try again when it is whole",

@@ -190,6 +190,7 @@ void write_wav(const std::filesystem::path& path, std::span<const Signal> signal
 Recording read_wav(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   require_bytes(name);
+  if (!options.headers_only) require_memory(path, "wav", options.memory);
   SndfileHandle file(name);
   require_samples(file, name);
   const char* const comment = file.getString(SF_STR_COMMENT);

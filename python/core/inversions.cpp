@@ -1,7 +1,9 @@
 // An inversion with its model prepared: arrays in, arrays out, nothing judged.
 #include <pybind11/stl.h>
 
+#include "experiments/study/observation.hpp"
 #include "libinverse/invert.hpp"
+#include "libsim/records/levels.hpp"
 #include "libsim/records/recording.hpp"
 #include "python/core/arrays.hpp"
 #include "python/core/errors.hpp"
@@ -48,12 +50,26 @@ py::dict described_estimate(Estimate estimate) {
   return told;
 }
 
+// Silence is none of the extremes here: its force is 0.
+void require_squares(const char* side, std::span<const double> samples) {
+  if (samples.empty()) return;
+  const auto extreme = find_extreme_magnitude(samples);
+  if (!extreme) return;
+  const double value = samples[extreme->first];
+  if (value == 0.0 || !std::isfinite(value)) return;  // the estimator names what is not finite
+  throw_invalid_input("{}, sample {}: {}", side, extreme->first, extreme->text);
+}
+
 class Inverter {
  public:
   Inverter(const std::string& yaml, std::size_t samples, double sample_rate, bool recorded)
       : options_(InverterOptions::read(yaml)),
         recipe_(options_.inversion),
         basis_(make_modal_basis(options_.string)) {
+    // More memory than the record has is taken for what a rate far too high would show.
+    require_periods("Inverter", options_.string.fundamental, samples, sample_rate);
+    const std::string hidden = explain_hidden_modes(basis_, sample_rate);
+    MODCAL_REQUIRE(hidden.empty(), "{}", hidden);
     do_watched(py::none(), [&](const Watch&) {
       prepared_ = recipe_.estimator().prepare({.basis = basis_,
                                                .contact = options_.contact.position,
@@ -68,6 +84,8 @@ class Inverter {
     EstimationRecord record;
     if (left) record.reactions[0] = span_of(*left);
     if (right) record.reactions[1] = span_of(*right);
+    require_squares("left", record.reactions[0]);
+    require_squares("right", record.reactions[1]);
     std::vector<Estimate> found;
     const auto invert = [&] {
       found = prepared_->estimate(

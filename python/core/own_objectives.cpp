@@ -74,7 +74,9 @@ class OwnObjective final : public Objective {
                                 .jacobian = member(can_.least_squares, kJacobian)};
       MODCAL_REQUIRE(can_.residuals || !callables.value.is_none(), "\"{}\" has no value(x)", told_);
       std::size_t count = 0;
-      if (can_.residuals) count = py::len(callables.residuals(array_of(parameters.start())));
+      if (can_.residuals) {
+        count = count_residuals(callables.residuals, array_of(parameters.start()));
+      }
       return std::make_unique<OwnFunction>(callables, parameters.size(), count, told_);
     });
   }

@@ -91,9 +91,14 @@ std::vector<Variable> variables_of(const py::list& list) {
 }
 
 // Python's function by our optimizer.
-py::dict minimize_own(const py::dict& callables, std::size_t residuals, const py::list& variables,
+py::dict minimize_own(const py::dict& callables, const py::list& variables,
                       const std::string& options, const py::object& progress) {
   const std::vector<Variable> stated = variables_of(variables);
+  std::vector<double> start;
+  for (const Variable& variable : stated) start.push_back(variable.initial);
+  const py::object squares = callables["residuals"];
+  const std::size_t residuals =
+      squares.is_none() ? 0 : count_residuals(squares, array_of(std::move(start)));
   const OwnFunction function(
       {callables["value"], callables["gradient"], callables["residuals"], callables["jacobian"]},
       stated.size(), residuals);
@@ -145,8 +150,8 @@ void add_own_searches(py::module_& module) {
                              [](const OwnEvaluator& self) { return self.get().evaluations_left(); })
       .def("value", &OwnEvaluator::value, py::arg("z"))
       .def("value_and_gradient", &OwnEvaluator::value_and_gradient, py::arg("z"));
-  module.def("minimize", &minimize_own, py::arg("callables"), py::arg("residuals"),
-             py::arg("variables"), py::arg("options"), py::arg("progress"));
+  module.def("minimize", &minimize_own, py::arg("callables"), py::arg("variables"),
+             py::arg("options"), py::arg("progress"));
   module.def("add_optimizer", &add_optimizer, py::arg("name"), py::arg("search"),
              py::arg("summary"));
   module.def("search", &search_with_own, py::arg("problem"), py::arg("search"), py::arg("options"),

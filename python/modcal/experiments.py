@@ -8,6 +8,8 @@ import warnings
 from pathlib import Path
 from typing import Any, Callable, Mapping, Union
 
+import numpy as np
+
 from modcal import _core, results, yaml
 from modcal.errors import InvalidInput, Mistake
 from modcal.models import Model, stated
@@ -110,6 +112,9 @@ def run(source: Source, overrides: Mapping[str, Any] | None = None, *,
     where it ended there. Without it nothing is written.
     threads: 0, all.
     """
+    if not isinstance(threads, (int, np.integer)) or threads < 0:
+        raise InvalidInput(f"threads = {threads!r} is no number of threads; give a whole number, 0 for all")
+    threads = int(threads)
     if out is not None:
         return _run_into(Path(out), source, overrides, threads, progress)
     opened = open_experiment(source, overrides)
@@ -221,7 +226,8 @@ def invert(record: Record, string: Model | Mapping[str, Any], position: float | 
     """Force and motion at the contact from the reactions.
 
     string: Model.string(), or {"length": 0.33, "linear_density": 1e-3, "fundamental": 294, ...} with
-    position: x_c [m]. keys: the others of kind: invert, as inversion={"estimator": "left"}.
+    position: x_c [m]. keys: the others of kind: invert, as inversion={"estimator": "one_sided"}.
+    The number of modes is read off the record where string does not state it.
     """
     return _on(record, "invert", string, position, keys)
 

@@ -32,8 +32,11 @@ class Estimate(NamedTuple):
 class Inverter:
     """The model of a string, prepared for records of one length: called with the reactions of each.
 
-    The library's own inversion: what `invert` judges of a record and draws besides is left out.
-    string, position, inversion: as `invert` takes them. recorded: a real string has modes above those stated.
+    The library's own inversion: what `invert` judges of a record and draws besides is left out, and the mean is not
+    removed. string, position, inversion: as `invert` takes them, but for the number of modes: prepared before there is
+    a record, it has 50 where string does not state it, while `invert` takes as many as the record tells. State it for
+    the same forces. rate, samples: two periods of the string or more. recorded: a real string has modes above those
+    stated.
     """
 
     def __init__(self, string: Model | Mapping[str, Any], position: float | str | None = None, *, samples: int, rate: float,

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from modcal import _core, yaml
 from modcal.errors import InvalidInput
-from modcal.records import as_samples
+from modcal.records import as_samples, require_responses
 from modcal.results import Result
 
 Array = NDArray[np.float64]
@@ -28,6 +28,19 @@ def stated(string: Model | Mapping[str, Any], position: float | str | None) -> d
     if position is None:
         raise InvalidInput("where the force acts is not said; give position, in m, or a Model.string()")
     return {"string": string, "bow": {"position": position}}
+
+
+def _require_level(name: str, response: NDArray[np.complex128]) -> None:
+    """What is not finite is refused with its frequency when it is fitted."""
+    finite = response[np.isfinite(response)]
+    with np.errstate(over="ignore"):
+        largest = float(np.max(np.abs(finite), initial=0.0))
+        squares = np.float64(largest) ** 2 * max(1, finite.size)
+    if finite.size == response.size > 0 and largest == 0.0:
+        raise InvalidInput(f"the response of {name} is zero at every frequency of the band; check its channel, or leave it out")
+    if not np.isfinite(squares):
+        raise InvalidInput(f"the response of {name} reaches {largest:g}, whose square is outside the range of double "
+                           "precision; repair it, or give it in another unit")
 
 
 class Model:
@@ -45,7 +58,8 @@ class Model:
     def string(cls, position: float | str, *, recorded: bool = True, **keys: Any) -> Model:
         """A string bowed at x_c [m]. Its sensors: the reactions R1, R2 [N] and the displacement y [m] at x_c.
 
-        keys: length, linear_density, fundamental, ..., as the section `string` of an experiment.
+        keys: length, linear_density, fundamental, ..., as the section `string` of an experiment. Without modes the
+        model itself, and an Inverter by it, has 50; invert and calibrate then take as many as their record tells.
         recorded: a real string has modes above those stated.
         """
         section = {"string": keys, "bow": {"position": position}}
@@ -86,6 +100,9 @@ class Model:
         step = (f[-1] - f[0]) / max(1, f.size - 1)
         if f.size < 3 or not step > 0.0 or not np.all(np.abs(f - step * np.rint(f / step)) < 1e-3 * step):
             raise InvalidInput("the frequencies are no multiples of an even step; interpolate the responses")
+        if not isinstance(most_modes, (int, np.integer)) or most_modes < 1:
+            raise InvalidInput(f"most_modes = {most_modes!r} is no number of modes; give a whole number, 1 or more")
+        require_responses(kinds, responses)
         below = int(np.rint(f[0] / step))
         rows = []
         if not responses:
@@ -98,8 +115,12 @@ class Model:
         if not (f[0] <= low < high <= f[-1]):
             raise InvalidInput(f"the band of {low:g} to {high:g} Hz is not within the frequencies, {f[0]:g} to "
                                f"{f[-1]:g} Hz")
+        band = (f >= low) & (f <= high)
+        for name, spectrum in zip(responses, rows):
+            _require_level(name, spectrum[below:][band])
         told = [kinds if isinstance(kinds, str) else kinds.get(name, "acceleration") for name in responses]
-        return cls._of_text(_core.fit_response(step, np.array(rows), list(responses), told, low, high, most_modes))
+        return cls._of_text(_core.fit_response(step, np.array(rows), list(responses), told, low, high,
+                                                int(most_modes)))
 
     @property
     def frequencies(self) -> Array:

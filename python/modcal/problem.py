@@ -152,11 +152,30 @@ class Problem:
         return f"<modcal.Problem {self._core.objective} of {', '.join(self.parameters.names)}>"
 
 
+def _require_own(kind: str, name: str, summary: str, what: str, called: Any) -> None:
+    for word, text in (("name", name), ("summary", summary)):
+        if not isinstance(text, str):
+            raise InvalidInput(f"the {word} of the {kind} is a {type(text).__name__}; give a text")
+    if not callable(called):
+        raise InvalidInput(f"{what} of the {kind} \"{name}\" is a {type(called).__name__}; give what can be called")
+
+
+def _require_typed(variable: Variable) -> None:
+    """What C++ would refuse without a word of what is wrong."""
+    for word, text in (("name", variable.name), ("unit", variable.unit)):
+        if not isinstance(text, str):
+            raise InvalidInput(f"{word} = {text!r} of a variable is a {type(text).__name__}; give a text")
+    for word, number in zip(variable._fields[2:], variable[2:]):
+        if np.ndim(number) > 0 or np.asarray(number).dtype.kind not in "fiu":
+            raise InvalidInput(f"{word} = {number!r} of \"{variable.name}\" is a {type(number).__name__}; give a number")
+
+
 def add_optimizer(name: str, search: Callable[[_core.Evaluator], str | None], summary: str = "in Python") -> None:
     """Makes an optimizer of your own one that experiments choose by its name, until Python ends.
 
     search: as Problem.minimize() takes it. Every kind of experiment may then say `optimizer: NAME`.
     """
+    _require_own("optimizer", name, summary, "search", search)
     _core.add_optimizer(name, search, summary)
 
 
@@ -170,6 +189,11 @@ def add_objective(name: str, bind: Callable[[Any], Any], summary: str = "in Pyth
     provides: some of "gradient", "residuals" and "jacobian". What bind returns then has these functions of x as
     attributes, and value(x); of residuals alone the value is half their sum of squares.
     """
+    _require_own("objective", name, summary, "bind", bind)
+    if isinstance(provides, str):
+        raise InvalidInput(f"provides is the text \"{provides}\"; give a list of words, [\"{provides}\"]")
+    if not all(isinstance(word, str) for word in provides):
+        raise InvalidInput(f"provides = {provides!r} is no list of words; give some of \"gradient\", \"residuals\", \"jacobian\"")
     _core.add_objective(name, bind, summary, list(provides))
 
 
@@ -180,14 +204,19 @@ def minimize(objective: Callable[[Array], float] | None, variables: Sequence[Var
              jacobian: Callable[[Array], ArrayLike] | None = None, progress: Progress = None) -> Search:
     """Minimizes a function of your own by one of modcal's optimizers.
 
-    objective: of x; None where it is half the sum of squares of the residuals.
+    objective: of x; None where it is half the sum of squares of the residuals. gradient: a number for each variable.
+    residuals: a row of numbers, as many at every x. jacobian: a row for each of them, with a number for each variable.
+    They are called from another thread; Ctrl-C waits until they return.
     """
     if not variables or not all(isinstance(one, Variable) for one in variables):
         raise InvalidInput("the variables are no list of modcal.Variable(name, unit, initial, lower, upper); give one or more")
     if objective is None and residuals is None:
         raise InvalidInput("nothing to minimize; give an objective or residuals")
     callables = {"value": objective, "gradient": gradient, "residuals": residuals, "jacobian": jacobian}
-    start = np.array([one.initial for one in variables])
-    count = len(np.asarray(residuals(start))) if residuals is not None else 0
+    for one in variables:
+        _require_typed(one)
+    for name, called in callables.items():
+        if called is not None and not callable(called):
+            raise InvalidInput(f"{'objective' if name == 'value' else name} is a {type(called).__name__}; give a function of x")
     stated = [one._asdict() for one in variables]
-    return _search(_core.minimize(callables, count, stated, _options(optimizer, budget), _told(progress)))
+    return _search(_core.minimize(callables, stated, _options(optimizer, budget), _told(progress)))

@@ -42,6 +42,15 @@ def _rate(time: ArrayLike) -> float:
     return float(rate)
 
 
+def require_responses(kinds: str | Mapping[str, str], responses: Mapping[str, ArrayLike] | None) -> None:
+    """Whether kinds by name are those of responses."""
+    unknown = [] if isinstance(kinds, str) else sorted(set(kinds) - set(responses or {}))
+    if unknown:
+        raise InvalidInput(f"kinds names {', '.join(unknown)}, which is no response; name some of "
+                           f"{', '.join(responses)}" if responses else
+                           f"kinds names {', '.join(unknown)}, which is no response; leave kinds out")
+
+
 class Record:
     """What sensors read, rows of one length.
 
@@ -71,8 +80,7 @@ class Record:
             raise InvalidInput("a record is of a string's reactions or of a structure's responses; give one of them")
         if responses is not None and "f_c" in responses:
             raise InvalidInput("a response cannot be named f_c, as the force at the contact is; give it as force=")
-        if not isinstance(kinds, str) and set(kinds) - set(responses or {}):
-            raise InvalidInput(f"kinds names {', '.join(sorted(set(kinds) - set(responses or {})))}, which is no response")
+        require_responses(kinds, responses)
         given: dict[str, ArrayLike | None] = dict(ends) if responses is None else {}
         given.update(responses or {})
         self._kinds = {name: "force" if responses is None else kinds if isinstance(kinds, str) else

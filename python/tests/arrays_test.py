@@ -130,6 +130,21 @@ class Prepared(Folder):
             inverter(np.zeros(999), np.zeros(999))
         with self.assertRaises(modcal.InvalidInput):
             inverter(np.full(1000, np.nan), np.zeros(1000))
+        loud = np.random.default_rng(1).normal(size=1000)
+        loud[17] = 1e200
+        with self.assertRaisesRegex(modcal.InvalidInput, "right, sample 17: 1e.200 is the largest magnitude, whose square"):
+            inverter(np.zeros(1000), loud)
+        self.assertEqual(inverter(np.zeros(1000), np.zeros(1000))[0].force.std(), 0.0)
+
+    def test_rates_that_show_no_string(self):
+        for rate, words in ((1e-9, "a sample rate of 1e-09 Hz does not show a string of f0 = 196 Hz"),
+                            (300, "a sample rate of 300 Hz does not show"),
+                            (1e9, r"100 samples at 1e\+09 Hz are 1e-07 s, less than two periods"),
+                            (1e12, "less than two periods")):
+            with self.assertRaisesRegex(modcal.InvalidInput, words):
+                modcal.Inverter(self.STRING, 0.03, samples=100, rate=rate)
+        with self.assertRaisesRegex(modcal.InvalidInput, r"highest mode \(9800 Hz\) is not below half the sample rate"):
+            modcal.Inverter(self.STRING, 0.03, samples=1000, rate=12800)
 
 
 if __name__ == "__main__":

@@ -159,6 +159,9 @@ class Functions(unittest.TestCase):
                 modcal.run(source)
         with self.assertRaisesRegex(modcal.InvalidInput, "the overrides are a int"):
             modcal.run(CALIBRATE, 3)
+        for threads in ("2", -1, 1.5):
+            with self.assertRaisesRegex(modcal.InvalidInput, "is no number of threads; give a whole number, 0 for all"):
+                modcal.run(CALIBRATE, threads=threads)
         with self.assertRaisesRegex(modcal.InvalidInput, r"make it by modcal.Record\("):
             modcal.invert([1.0, 2.0], CALIBRATE["scene"]["string"], 0.03)
         for keys in ({"samples": 0}, {"samples": 1.5}, {"rate": "x"}, {"rate": float("nan")}):
@@ -200,8 +203,8 @@ class Interrupt(unittest.TestCase):
             for _ in range(100):
                 inverter(noise, noise)
         thread.join()
-        short = modcal.Inverter({"length": 0.33, "linear_density": 3.1e-3, "fundamental": 196}, 0.03, samples=512, rate=51200)
-        self.assertEqual(short(noise[:512], noise[:512])[0].force.size, 512)  # the wish is forgotten
+        short = modcal.Inverter({"length": 0.33, "linear_density": 3.1e-3, "fundamental": 196}, 0.03, samples=1024, rate=51200)
+        self.assertEqual(short(noise[:1024], noise[:1024])[0].force.size, 1024)  # the wish is forgotten
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ class Leaks(unittest.TestCase):
         short = {"scene.duration": 0.05, "measurement.sample_rate": 6400}
         cls.problem = modcal.Problem(CALIBRATE, short)
         cls.keys = {**SCENE["string"], "modes": 4}
-        cls.samples = np.sin(np.arange(64.0))
+        cls.samples = np.sin(np.arange(128.0))
 
     def test_evaluations(self):
         problem, x = self.problem, self.problem.x0
@@ -51,7 +51,7 @@ class Leaks(unittest.TestCase):
         self.check(lambda: modcal.minimize(lambda x: float(x @ x), [one], budget={"evaluations": 3}))
 
     def test_inversions(self):
-        inverter = modcal.Inverter(self.keys, "30 mm", samples=64, rate=6400)
+        inverter = modcal.Inverter(self.keys, "30 mm", samples=128, rate=6400)
         self.check(lambda: inverter(self.samples, self.samples, motion=True))
 
     def test_models_and_records(self):

@@ -134,6 +134,15 @@ class OfAStructure(Folder):
                                   most_modes=6)
         with self.assertRaisesRegex(modcal.InvalidInput, "no response to fit"):
             modcal.Model.response(f, {}, low=10, high=50)
+        with self.assertRaisesRegex(modcal.InvalidInput, "kinds names a1x, which is no response; name some of a"):
+            modcal.Model.response(f, {"a": f}, low=10, high=50, kinds={"a1x": "velocity"})
+        for wrong in (0, -1, 2.5, "3"):
+            with self.assertRaisesRegex(modcal.InvalidInput, "most_modes = .* is no number of modes; give a whole number"):
+                modcal.Model.response(f, {"a": f}, low=10, high=50, most_modes=wrong)
+        for response, words in ((0.0 * f, "response of b is zero at every frequency of the band"),
+                                (1e200 * f, r"response of b reaches 5e\+201, whose square is outside")):
+            with self.assertRaisesRegex(modcal.InvalidInput, words):
+                modcal.Model.response(f, {"a": f, "b": response}, low=10, high=50)
         nan = np.where(f == 20, np.nan, f)
         for at, response, words in ((f + 0.5, f, "no multiples of an even step"),
                                     (f, f[:-1], "no row of 100 numbers"), (f, nan, "not finite at 20 Hz"),

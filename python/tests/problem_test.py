@@ -166,6 +166,13 @@ class Registered(Folder):
         self.assertIn("5 evaluations", few.summary)
         with self.assertRaisesRegex(modcal.InvalidInput, "is there already"):
             modcal.add_optimizer("nlopt", halving)
+        for arguments, words in ((("o2", 3), 'search of the optimizer "o2" is a int; give what can be called'),
+                                 ((3, halving), "the name of the optimizer is a int; give a text"),
+                                 (("", halving), "the name of the optimizer is empty: give it one")):
+            with self.assertRaisesRegex(modcal.InvalidInput, words):
+                modcal.add_optimizer(*arguments)
+        with self.assertRaisesRegex(modcal.InvalidInput, 'bind of the objective "o2" is a int'):
+            modcal.add_objective("o2", 3)
 
     def test_optimizer_that_fails(self):
         def wrong(evaluator):
@@ -231,6 +238,8 @@ class Registered(Folder):
                                 (["gradient", "gradient"], "each once")):
             with self.assertRaisesRegex(modcal.InvalidInput, words):
                 modcal.add_objective("wrong", Parabola, provides=provides)
+        with self.assertRaisesRegex(modcal.InvalidInput, r'provides is the text "gradient"; give a list of words'):
+            modcal.add_objective("wrong", Parabola, provides="gradient")
         # A name that no short string holds.
         modcal.add_objective("with_residuals_and_jacobian", Distance, provides=["residuals", "jacobian"])
         named = modcal.Problem(CALIBRATE, {**own, "calibration.objective": "with_residuals_and_jacobian"})
@@ -265,9 +274,6 @@ class OwnObjective(Folder):
             modcal.minimize(wrong, self.VARIABLES)
         with self.assertRaisesRegex(modcal.InvalidInput, "nothing to minimize"):
             modcal.minimize(None, self.VARIABLES)
-        with self.assertRaisesRegex(modcal.InvalidInput, "3 values in the place of 2"):
-            modcal.minimize(lambda x: 0.0, self.VARIABLES, gradient=lambda x: [0, 0, 0],
-                            optimizer={"type": "nlopt", "algorithm": "LD_LBFGS"})
 
 
 class Counting(Folder):

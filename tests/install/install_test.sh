@@ -31,6 +31,21 @@ if foreign_flags <"$work/examples/compile_commands.json"; then fail "a user gets
 quietly "$cmake" --build "$work/examples"
 (cd "$work/examples" && quietly "${cmake%cmake}ctest" --output-on-failure --no-tests=error)
 
+# The component of inversions is enough for one.
+mkdir "$work/alone"
+cat >"$work/alone/CMakeLists.txt" <<'EOF'
+cmake_minimum_required(VERSION 3.25)
+project(alone LANGUAGES CXX)
+find_package(modcal REQUIRED COMPONENTS inverse io)
+add_executable(invert_record ${EXAMPLES}/invert_record.cpp)
+target_link_libraries(invert_record PRIVATE modcal::inverse modcal::io)
+EOF
+quietly "$cmake" -S "$work/alone" -B "$work/alone/build" -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_CXX_COMPILER="$compiler" -DEXAMPLES="$root/examples"
+quietly "$cmake" --build "$work/alone/build"
+"$work/alone/build/invert_record" "$work/examples/stroke.wav" | grep -q '^force from both reactions' ||
+  fail "a program of the component inverse does not run"
+
 # A component brings what it stands on and nothing else; what is asked for and not there is said.
 cat >"$work/CMakeLists.txt" <<'EOF'
 cmake_minimum_required(VERSION 3.25)

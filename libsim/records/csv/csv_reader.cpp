@@ -291,6 +291,7 @@ Recording read_csv(const std::filesystem::path& path, const ReadOptions& options
   const bool usable = std::isnan(options.sample_rate) ||
                       (options.sample_rate > 0.0 && std::isfinite(options.sample_rate));
   MODCAL_REQUIRE(usable, "sample_rate = {} Hz cannot be used: it must be > 0", options.sample_rate);
+  if (!options.headers_only) require_memory(path, "csv", options.memory);
   return CsvReader(path, options).read();
 }
 

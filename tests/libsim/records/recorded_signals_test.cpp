@@ -246,7 +246,16 @@ TEST_F(LoadRecord, ForeseesWhatReadingNeedsAndStopsWhenAsked) {
   };
   EXPECT_EQ(read(1e6), "accepted");
   EXPECT_THAT(read(1e5), HasSubstr("reading 1e+04 rows of 2 channels needs about 0.00032 GB"));
+  const auto alone = [&](double memory) {
+    return refusal_of([&] { read_csv(path("r.csv"), {.memory = memory}); });
+  };
+  EXPECT_EQ(alone(1e6), "accepted");
+  EXPECT_EQ(alone(1e5), read(1e5));
   const Signal signal{"R1", "N", 1000.0, std::vector<double>(300, 0.5)};
+  write_wav(path("s.wav"), std::span(&signal, 1));
+  EXPECT_THAT(refusal_of([&] { read_wav(path("s.wav"), {.memory = 100.0}); }),
+              HasSubstr("reading 300 rows of 1 channels needs about"));
+  EXPECT_EQ(read_wav(path("s.wav"), {.memory = 1e5}).frames(), 300U);
   for (const RecordFormat& format : record_formats()) {
     const std::filesystem::path file = path(fmt::format("s{}", format.extensions.front()));
     format.write(file, std::span(&signal, 1), {"test"});
