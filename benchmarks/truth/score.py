@@ -53,6 +53,8 @@ MISMATCHES = {
     **{f"hum_{h:g}": ([], {"hum": h}) for h in (0.001, 0.01, 0.05)},
     **{f"pink_{p:g}": ([], {"pink": p}) for p in (0.1, 0.5)},
     **{f"correlated_{c:g}": ([], {"correlated": c}) for c in (0.3, 0.9)},
+    # Nine times the power of the noise about a tenth of the sampling rate, a third of that wide.
+    "hill": ([], {"hill": 0.1}),
     "8_bit": ([], {"bits": 8}),
     # Sensors and damping as far from those stated, and modes as far from their law, as the priors say: the error bars
     # should hold what they promise.
@@ -170,12 +172,26 @@ def pink(normal, count):
     return result
 
 
+def hilly(normal, count, place):
+    """White noise and that noise through a resonance at PLACE of the sampling rate; of variance 1."""
+    pole = 0.9
+    turn, last, before, result = 2.0 * pole * math.cos(2.0 * math.pi * place), 0.0, 0.0, []
+    for _ in range(count):
+        white = normal(0.0, 1.0)
+        last, before = turn * last - pole * pole * before + 0.25 * white, last
+        result.append(white + last)
+    rms = math.sqrt(sum(x * x for x in result) / count)
+    return [x / rms for x in result]
+
+
 def noise_of(normal, count, how):
     """Noise of variance 1 for both reactions."""
     channels = [[normal(0.0, 1.0) for _ in range(count)] for _ in range(2)]
     if "correlated" in how:
         c = how["correlated"]
         channels[1] = [c * x + math.sqrt(1.0 - c * c) * y for x, y in zip(*channels)]
+    if "hill" in how:
+        channels = [hilly(normal, count, how["hill"]) for _ in channels]
     if "pink" in how:
         share = how["pink"]
         channels = [[math.sqrt(1.0 - share) * x + math.sqrt(share) * y for x, y in zip(white, pink(normal, count))]

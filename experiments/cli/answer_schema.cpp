@@ -107,6 +107,7 @@ constexpr const char* kStatus = R"json({
   "kind": {"type": "string"}, "title": {"type": "string"}, "running": {"type": "boolean"},
   "tasks": {"$ref": "#/$defs/count"}, "done": {"$ref": "#/$defs/count"},
   "failed": {"$ref": "#/$defs/count"}, "pending": {"$ref": "#/$defs/count"},
+  "other_results": {"$ref": "#/$defs/count"},
   "damaged_lines": {"$ref": "#/$defs/count"}, "median_task_seconds": {"type": "number"},
   "left_core_seconds": {"type": "number"}, "command": {"type": "string"}
 })json";

@@ -81,13 +81,10 @@ ExitCode limit(const FileArguments& arguments) {
   const auto loaded =
       load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
   if (!loaded) return ExitCode::kInvalidInput;
-  MODCAL_REQUIRE(dynamic_cast<const TaskExperiment*>(loaded->experiment.get()) == nullptr,
-                 "{} is a list of tasks, and a limit is that of one: leave the sweep out, or state "
-                 "noise_levels in a file of kind calibration_limit",
-                 arguments.file);
   const auto question = loaded->experiment->limit_question();
   MODCAL_REQUIRE(question != nullptr,
-                 "{} is no calibration: limits exist for the kinds calibrate and calibration_limit",
+                 "{} is not one calibration: limits exist for the kinds calibrate, without a "
+                 "sweep, and calibration_limit",
                  arguments.file);
   TruthCache truths;
   if (answer_style().json) {
