@@ -5,6 +5,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/study/sample.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {

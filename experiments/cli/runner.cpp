@@ -2,7 +2,9 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/write_results.hpp"
@@ -149,7 +151,7 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) 
   const FolderLock working(out.path(), Shard{});
   begin_run(loaded, settings, out);
   SharedWork work;
-  const PilotRun pilot = with_context(
+  PilotRun pilot = with_context(
       loaded, folder, settings.command, work,
       [&](const StudyContext& context) { return run_some_tasks(*list, context, store); });
   MODCAL_REQUIRE(

@@ -7,6 +7,7 @@
 #include "experiments/cli/output_directory.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/runs/results_database.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
 
 namespace modcal {
