@@ -130,7 +130,7 @@ std::vector<std::size_t> chosen_channels(const std::vector<RecordedChannel>& cha
 
 void read_samples(SndfileHandle& file, const std::vector<std::size_t>& chosen, Recording& recording,
                   const StopToken& stop, const std::string& name) {
-  const auto width = static_cast<std::size_t>(file.channels());
+  const auto width = static_cast<std::size_t>(std::max(1, file.channels()));
   const std::size_t block_frames = std::max<std::size_t>(1, 2 * kBlockFrames / width);
   std::vector<double> block(width * block_frames);
   for (RecordedChannel& channel : recording.channels) {
