@@ -95,9 +95,11 @@ report::Table task_table(const std::vector<std::string>& axes,
 std::string printed_table(const std::vector<SweepRow>& rows) {
   const bool any_whole = std::ranges::any_of(
       rows, [](const SweepRow& row) { return !std::isnan(row.whole.known_mean()); });
-  std::string text =
-      "noise %  side          R median [10 %, 90 %]   n   paper R   epsilon   paper epsilon   R "
-      "mean";
+  std::size_t width = 12;
+  for (const SweepRow& row : rows) width = std::max(width, row.side.size());
+  std::string text = fmt::format(
+      "noise %  {:<{}}  R median [10 %, 90 %]   n   paper R   epsilon   paper epsilon   R mean",
+      "side", width);
   text += any_whole ? "   R long\n" : "\n";
   const auto optional_text = [](const std::optional<double>& value, int digits) {
     return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
@@ -105,9 +107,9 @@ std::string printed_table(const std::vector<SweepRow>& rows) {
   for (const SweepRow& row : rows) {
     const Sample& found = row.correlation;
     text += fmt::format(
-        "{:7.3g}  {:<12}  {:5.2f}  [{:5.2f}, {:5.2f}]  {:3d}   {:>7}   {:7.3g}   {:>13}   {:6.3f}",
-        row.noise_percent, row.side, found.median(), found.q10(), found.q90(), found.values.size(),
-        optional_text(row.published_correlation, 2), row.parameter.median(),
+        "{:7.3g}  {:<{}}  {:5.2f}  [{:5.2f}, {:5.2f}]  {:3d}   {:>7}   {:7.3g}   {:>13}   {:6.3f}",
+        row.noise_percent, row.side, width, found.median(), found.q10(), found.q90(),
+        found.values.size(), optional_text(row.published_correlation, 2), row.parameter.median(),
         optional_text(row.published_parameter, 3), found.known_mean());
     text += any_whole ? fmt::format("   {:6.3f}\n", row.whole.known_mean()) : "\n";
   }
