@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "experiments/loader.hpp"
+#include "tests/experiments/kinds/list_case.hpp"
 #include "tests/folder_test.hpp"
 
 namespace modcal::kind_list_test {
@@ -16,36 +16,19 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr std::string_view kScene = R"(
-scene:
-  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10, damping: {type: constant, ratio: 2e-3}}
-  bow: {position: 30 mm, velocity: 0 m/s, normal_force: 0 N}
-  duration: 0.2 s
-  initial: {type: pluck, position: 43 mm, displacement: 1 mm, width: 3 mm}
-simulator: {type: modal_exact, time_step: 20 us}
-)";
-const std::string kSimulate = "kind: simulate\n" + std::string(kScene) + R"(
+const std::string kSimulate = "kind: simulate\n" + std::string(kListScene) + R"(
 measurement: {sample_rate: 12.5 kHz}
 sweep:
   product:
     scene.initial.displacement: [1 mm, 2 mm]
     seed: [1, 2]
 )";
-const std::string kIdentify = "kind: identify\n" + std::string(kScene) + R"(
+const std::string kIdentify = "kind: identify\n" + std::string(kListScene) + R"(
 identification: {highest_frequency: 900 Hz}
 sweep:
   product:
     measurement.noise_level: [0.5 %, 1 %]
 )";
-
-LoadedExperiment loaded_from(const std::string& yaml) {
-  return load_experiment(parse_yaml(yaml, "test.yaml"));
-}
-
-const TaskExperiment& list_of(const LoadedExperiment& loaded) {
-  EXPECT_NE(loaded.experiment, nullptr) << format_mistakes(loaded.document, loaded.mistakes);
-  return dynamic_cast<const TaskExperiment&>(*loaded.experiment);
-}
 
 std::map<std::string, double> numbers_of(const std::string& outcome) {
   const auto numbers = read_outcome<RunOutcome>(outcome).numbers;
@@ -151,7 +134,7 @@ TEST(KindList, ReplaysATaskAsTheExperimentThatItIs) {
 }
 
 TEST(KindList, MakesNoFiguresAndSignalsThatNobodyReads) {
-  const LoadedExperiment loaded = loaded_from("kind: invert\n" + std::string(kScene) +
+  const LoadedExperiment loaded = loaded_from("kind: invert\n" + std::string(kListScene) +
                                               "measurement: {sample_rate: 12.5 kHz}\n");
   ASSERT_NE(loaded.experiment, nullptr) << format_mistakes(loaded.document, loaded.mistakes);
   SharedWork work;

@@ -4,30 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/loader.hpp"
+#include "tests/experiments/kinds/list_case.hpp"
 
 namespace modcal::run_summary_test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr std::string_view kScene = R"(
-scene:
-  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10, damping: {type: constant, ratio: 2e-3}}
-  bow: {position: 30 mm, velocity: 0 m/s, normal_force: 0 N}
-  duration: 0.2 s
-  initial: {type: pluck, position: 43 mm, displacement: 1 mm, width: 3 mm}
-simulator: {type: modal_exact, time_step: 20 us}
-)";
-LoadedExperiment loaded_from(const std::string& yaml) {
-  return load_experiment(parse_yaml(yaml, "test.yaml"));
-}
-
-const TaskExperiment& list_of(const LoadedExperiment& loaded) {
-  EXPECT_NE(loaded.experiment, nullptr) << format_mistakes(loaded.document, loaded.mistakes);
-  return dynamic_cast<const TaskExperiment&>(*loaded.experiment);
-}
 
 // Outcomes of a list whose task t leaves x = t, and y as well where t is even.
 StudyResult summed_up(const TaskExperiment& list) {
@@ -41,7 +24,7 @@ StudyResult summed_up(const TaskExperiment& list) {
 }
 
 std::string sweep_of(const std::string& sweep) {
-  return "kind: simulate\n" + std::string(kScene) +
+  return "kind: simulate\n" + std::string(kListScene) +
          "measurement: {sample_rate: 12.5 kHz}\nsweep: " + sweep + "\n";
 }
 
